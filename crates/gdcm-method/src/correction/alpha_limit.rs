@@ -1,5 +1,9 @@
 //! Limit `alpha -> 0+` for the regularisation weight: step 4 in `solve` (M8, M9).
 //!
+//! A *component* is a group of channels that constrained entries connect; its *scale* is the common
+//! shift that the constraints leave free (`components`). A channel's *coordinate* is its gain's
+//! logarithm or its delay.
+//!
 //! With `alpha = 0`, the objective does not depend on a common shift of all scales in a *floating
 //! piece*: components that fitted entries connect with one another, but not with the ground
 //! ([`Objective::floating_pieces`]). With a positive `alpha`, every component with a regularised

@@ -6,8 +6,9 @@
 //! delays                             UB = max(0, (1-q)-quantile)    of Delta phi(H_sim, H_ref) / omega
 //! ```
 //!
-//! The quantiles pool the frequencies of the on-axis responses. The lower bound on a signed delay
-//! follows from the lead filters instead (`lead_design`).
+//! `H_sim` is the physics model's response, `H_ref` the identified model's, `q` the share of values
+//! that may lie beyond each bound. The quantiles pool the frequencies of the on-axis responses. The
+//! lower bound on a signed delay follows from the lead filters instead (`lead_design`).
 
 use serde::{Deserialize, Serialize};
 

@@ -8,7 +8,8 @@ use super::channel_leads::ChannelLeads;
 use super::channels::{Channel, Channels};
 
 /// The correction `M_O H M_I`; each channel contributes `k e^(-tau s)`, eq. (12), or `k L(s)`
-/// (M15).
+/// (M15). `H` is the physics model's response with `m` inputs and `p` outputs; the diagonal
+/// matrices `M_I` and `M_O` hold the contributions of the input and output channels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelCorrection {
     /// Input channel gains, m values.

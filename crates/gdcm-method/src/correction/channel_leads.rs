@@ -1,4 +1,5 @@
-//! Signed channel delays, with the lead filters that realise the negative ones (M15.5).
+//! Signed channel delays, with the lead filters that realise the negative ones (M15.5). A negative
+//! delay, a *lead*, is needed where the physics model lags.
 
 use std::sync::{Arc, OnceLock};
 

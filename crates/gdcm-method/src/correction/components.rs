@@ -6,10 +6,11 @@
 //! value of an input's node = x_i,  of an output's node = -y_o      x_i, y_o: coordinates (ln gains or delays)
 //! ```
 //!
-//! The *components* are the connected components in a graph with the channels as nodes and the
-//! constrained entries as edges ([`super::constraints`]). A constrained entry prescribes the
-//! difference between two nodes in one component, which does not depend on `s`: the constraints
-//! leave the scales free, within the box.
+//! A *constrained entry* is a response whose net gain or delay must equal its delta, the gain or
+//! delay that it needs. The *components* are the connected components in a graph with the channels
+//! as nodes and the constrained entries as edges ([`super::constraints`]). A constrained entry
+//! prescribes the difference between two nodes in one component, which does not depend on `s`: the
+//! constraints leave the scales free, within the box.
 
 use gdcm_model::dataset::Pair;
 

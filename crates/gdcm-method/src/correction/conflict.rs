@@ -1,4 +1,6 @@
-//! Conflicts: constrained entries and bounds that cannot all be met.
+//! Conflicts: constrained entries and bounds that cannot all be met. A *constrained entry* is a
+//! response whose net gain (the product of its two channels' gains) or net delay (their sum) must
+//! equal its delta, the gain or delay that it needs.
 
 use gdcm_model::dataset::Pair;
 

@@ -1,4 +1,7 @@
-//! Finds the conflict behind each constrained entry that stage 1 could not meet.
+//! Finds the conflict behind each constrained entry that stage 1 could not meet. A constrained
+//! entry prescribes the net gain or delay of a response. If the bounds or other constrained entries
+//! make this infeasible, stage 1 ([`super::reachable_targets`]) takes the nearest feasible values
+//! (least squares); the entries whose value it changes are *missed*.
 //!
 //! Nodes, their values, and entries as prescribed differences between these values are defined in
 //! [`super::constraints`]. A missed entry is a *pull* from one node to another; the pulls are the
@@ -91,8 +94,11 @@ impl ConflictSearch<'_> {
     /// Steps 1 to 4: returns the smallest conflict through `pull`; `None` if no loop and no path
     /// leads through it.
     fn smallest_through(&self, pull: &Pull) -> Option<Conflict> {
+        // Step 1
         let around = self.flow.way_back(pull);
+        // Step 2
         let path = self.flow.path_through(pull);
+        // Step 3
         match (around, path) {
             // The loop has `around.len() + 1` entries, the path also two bounds.
             (Some(around), Some(path)) if around.len() < path.len() + 2 => {

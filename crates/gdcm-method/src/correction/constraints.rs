@@ -6,9 +6,10 @@
 //! low <= x, y <= high
 //! ```
 //!
-//! The channels are the *nodes* in a graph, the inputs first, then the outputs. An input node has
-//! the value `v = x_i`, an output node `v = -y_o`, so that a constrained entry prescribes the
-//! difference between two nodes.
+//! A *constrained entry* is a response whose net gain or delay must equal its delta, the gain or
+//! delay that it needs. The channels are the *nodes* in a graph, the inputs first, then the
+//! outputs. An input node has the value `v = x_i`, an output node `v = -y_o`, so that a constrained
+//! entry prescribes the difference between two nodes.
 
 use gdcm_model::dataset::Pair;
 

@@ -132,6 +132,7 @@ impl CorrectedModel {
     ) -> Result<Self, CorrectedModelError> {
         let timing = model.timing();
         let sample_time_s = timing.sample_time_s;
+        // Step 1
         let delays_s = correction.channels(|channel| delay_s(channel, correction, timing));
         let delays = delays_s
             .try_map(|channel, &delay_s| delay_model(channel, delay_s, sample_time_s, pade))?;
@@ -146,6 +147,7 @@ impl CorrectedModel {
         if states > MOST_STATES {
             return Err(CorrectedModelError::TooManyStates { states });
         }
+        // Steps 2 and 3
         let mut whole = Blocks::with_gains(model, correction).between(&delays);
         if correction.leads.is_some() {
             whole = whole.between(&lead_models);

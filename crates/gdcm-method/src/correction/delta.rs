@@ -5,6 +5,10 @@
 //! G    = median |H_ref| / |H_sim|                       D = median Delta phi(H_sim, H_ref) / omega
 //! band delay = sum W omega Delta phi / sum W omega^2    W: coherence weight, otherwise 1 (M15.2)
 //! ```
+//!
+//! `H_sim` is the physics model's response, `H_ref` the identified model's, `Delta phi` the phase
+//! by which the physics model leads; medians and sums are over the frequencies. The *mismatch* is
+//! the difference between both in dB and in phase.
 
 use serde::{Deserialize, Serialize};
 

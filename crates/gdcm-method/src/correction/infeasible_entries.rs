@@ -1,8 +1,11 @@
 //! Constrained entries whose delta is infeasible, each with the conflict behind it: step 5 in
 //! `solve`.
 //!
-//! Stage 1 (`reachable_targets`) has replaced such an entry's prescribed sum by a target, the
-//! nearest feasible sum.
+//! A constrained entry prescribes a sum of two channel coordinates (logarithms of gains, or
+//! delays): its delta, the gain or delay that the response needs. Stage 1 (`reachable_targets`) has
+//! replaced an infeasible sum by a target, the nearest feasible sum. A *conflict* is a smallest set
+//! of constrained entries and bounds that cannot all be met; in a *loop*, entries contradict each
+//! other whatever the bounds.
 
 use super::branch_and_bound::effort::{Effort, SearchStopped};
 use super::conflict::{Conflict, ConflictKind};
@@ -51,11 +54,13 @@ pub(super) fn misses(
     };
     for (asked, target) in constraints.entries.iter().zip(&reached.targets) {
         if (target.sum - asked.sum).abs() > tolerance {
+            // Step 1
             let known = conflicts.iter().find(|found| found.missed == asked.pair);
             let why = match known {
                 Some(found) => found.conflict.clone(),
                 None => unclear_conflict(problem, constraints),
             };
+            // Step 2
             let miss = unmatched(problem, asked, target, why);
             if miss.why.agrees_within(problem.agreement) && miss.excess.abs() <= problem.agreement {
                 misses.agreeing.push(miss);

@@ -1,4 +1,6 @@
-//! Lead filter design for a negative signed delay (M15.3).
+//! Lead filter design for a negative signed delay (M15.3): a channel with a negative delay needs
+//! phase lead, and the filter's *band delay*, the delay that fits its phase over the band best,
+//! equals that delay.
 
 use std::sync::Arc;
 
@@ -152,6 +154,7 @@ impl LeadDesign {
         const STEPS: usize = 100;
         /// Relative change in `l` at which the iteration ends (step 4).
         const RELATIVE_CHANGE: f64 = 1e-9;
+        // Step 1
         let mut low = 0.0;
         let mut high = self.longest_lead_s();
         if tau_s >= 0.0 {
@@ -162,18 +165,21 @@ impl LeadDesign {
         }
         let mut lead_s = (-tau_s / self.band_delay_fall(0.0)).min(high);
         for _ in 0..STEPS {
+            // Step 2
             let miss_s = self.band_delay_s(lead_s) - tau_s;
             if miss_s > 0.0 {
                 low = lead_s;
             } else {
                 high = lead_s;
             }
+            // Step 3
             let newton_s = lead_s + miss_s / self.band_delay_fall(lead_s);
             let next_s = if (low..=high).contains(&newton_s) {
                 newton_s
             } else {
                 0.5 * (low + high)
             };
+            // Step 4
             let step_s = (next_s - lead_s).abs();
             lead_s = next_s;
             if step_s <= RELATIVE_CHANGE * lead_s {

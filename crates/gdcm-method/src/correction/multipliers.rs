@@ -1,7 +1,8 @@
 //! Lagrange multipliers for the constrained entries and the active bounds at the minimum.
 //!
-//! With the objective `F` as a function of the channels `x` (gain logarithms, or delays), the
-//! solution satisfies the Karush-Kuhn-Tucker conditions
+//! A *constrained entry* is a response for which the sum of its input's and its output's `x` is
+//! prescribed. With the objective `F` as a function of the channels `x` (gain logarithms, or
+//! delays), the solution satisfies the Karush-Kuhn-Tucker conditions
 //!
 //! ```text
 //! dF/dx_c = mu_c + sum of lambda_e over the constrained entries e of channel c
@@ -123,6 +124,7 @@ impl Multipliers {
     /// are not unique, their sum of squares is minimal.
     pub(super) fn new(minimum: &ConstrainedMinimum) -> Self {
         let mut channels = vec![0.0; minimum.slopes.len()];
+        // Steps 1 and 2
         for piece in minimum.pieces() {
             let push = minimum.push(&piece);
             for &channel in &push.stopping {
@@ -136,7 +138,7 @@ impl Multipliers {
     }
 }
 
-/// Solves for the entries' multipliers `lambda_e`, given the bounds' multipliers `mu_c`.
+/// Step 3: solves for the entries' multipliers `lambda_e`, given the bounds' multipliers `mu_c`.
 fn entry_multipliers(minimum: &ConstrainedMinimum, bounds: &[f64]) -> Vec<f64> {
     if minimum.constrained.is_empty() {
         return Vec::new();

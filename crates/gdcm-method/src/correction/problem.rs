@@ -1,4 +1,6 @@
 //! Problem for the channel values: eq. (7) for gains, eq. (11) for delays, M15.4 for signed delays.
+//! An *entry* is a response of output `o` to input `i`; its *delta* is the gain or delay that it
+//! needs, its *net value* what its two channels give it.
 
 use std::ops::RangeInclusive;
 

@@ -1,5 +1,6 @@
-//! Reasons why gains or delays cannot be computed: an invalid problem, or a search that failed or was
-//! stopped.
+//! Reasons why gains or delays cannot be computed: an invalid problem, or a search that failed or
+//! was stopped. A *delta* is the gain or delay that a response needs; a response whose channels
+//! must give it exactly its delta is constrained, or *held*.
 
 use gdcm_model::dataset::Pair;
 

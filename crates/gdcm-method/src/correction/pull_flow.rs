@@ -1,8 +1,10 @@
 //! Constrained entries that stage 1 could not meet, as pulls between the nodes in a directed graph,
 //! and the shortest walks in this graph.
 //!
-//! The nodes and their values `v` are defined in [`super::constraints`]. A *pull* requires `v_to -
-//! v_from >= weight`, but stage 1 has reached less.
+//! A constrained entry prescribes the difference between two nodes' values `v`, one for its input
+//! channel and one for its output channel ([`super::constraints`]). Stage 1 (`reachable_targets`)
+//! has found the node values within the bounds that meet all entries best. A *pull* requires that
+//! `v_to - v_from >= weight`, but stage 1 has reached less.
 
 use std::collections::VecDeque;
 

@@ -6,6 +6,9 @@
 //! residual      G - k_o k_i, or in dB         D - tau_o - tau_i
 //! coordinate    ln k                          tau / unit
 //! ```
+//!
+//! `k_o`, `k_i` and `tau_o`, `tau_i` are the gains and delays of a response's output and input
+//! channel, `G` and `D` the gain and the delay that the response needs.
 
 use std::fmt;
 

@@ -4,7 +4,10 @@
 //! min sum (x_i + y_o - sum_oi)^2     over the constrained entries of infeasible components, subject to the box
 //! ```
 //!
-//! The symbols are defined in [`super::constraints`].
+//! `x_i` and `y_o` are the coordinates (logarithms of gains, or delays) of input `i` and output
+//! `o`; `sum_oi` is prescribed for the response of `o` to `i` ([`super::constraints`]). A
+//! *component* is a group of channels that constrained entries connect; it is infeasible if its
+//! entries contradict each other or the box.
 
 use super::branch_and_bound::objective::Objective;
 use super::branch_and_bound::rounded::Rounded;
@@ -39,6 +42,7 @@ pub(crate) fn reach<E>(
     constraints: &Constraints,
     minimise: impl FnOnce(&Objective) -> Result<Vec<f64>, E>,
 ) -> Result<Reached, E> {
+    // Step 1
     let asked = Components::new(constraints);
     if asked.are_possible() {
         return Ok(Reached {
@@ -47,7 +51,9 @@ pub(crate) fn reach<E>(
             point: None,
         });
     }
+    // Step 2
     let point = minimise(&nearest_sums(constraints, &asked))?;
+    // Step 3
     let mut targets = constraints.entries.clone();
     for target in &mut targets {
         if asked.is_infeasible(target.pair) {
@@ -55,6 +61,7 @@ pub(crate) fn reach<E>(
             target.sum = point[nodes.input] - point[nodes.output];
         }
     }
+    // Step 4
     let components = Components::new(&constraints.with_entries(targets.clone()));
     Ok(Reached {
         targets,

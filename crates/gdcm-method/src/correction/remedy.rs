@@ -1,4 +1,6 @@
-//! Remedies: single changes that make all constrained entries feasible.
+//! Remedies: single changes that make all constrained entries feasible. A constrained entry
+//! prescribes the gain or delay that two channels together give a response. A change moves one
+//! bound on the channels, or releases one entry: it is then no longer constrained.
 
 use std::collections::BTreeSet;
 
@@ -51,10 +53,12 @@ impl Remedy {
         if conflicts.is_empty() {
             return Ok(None);
         }
+        // Step 1
         let free = sufficient_releases(constraints, conflicts, effort)?;
         let coordinate = problem.coordinate();
+        // Step 2
         let sufficient = SufficientRange::new(constraints);
-        // `max`, `min`: leave a bound unchanged if it is already sufficient.
+        // Step 3. `max`, `min`: leave a bound unchanged if it is already sufficient.
         let upper = sufficient
             .high
             .map(|high| three_digits(coordinate.value(high), f64::ceil).max(problem.bounds.upper));

@@ -1,6 +1,8 @@
 //! Cost of each constrained entry and each active bound at the solution, from its multiplier.
 //!
-//! The multipliers and the conditions that they satisfy are defined in `multipliers`.
+//! A *multiplier* is the derivative of the minimum objective with respect to a constrained entry's
+//! prescribed value or to an active bound; `multipliers` has the conditions that determine it. A
+//! *piece* is a group of channels that constrained entries connect: it moves as a whole.
 
 use gdcm_model::dataset::Pair;
 

@@ -1,5 +1,6 @@
 //! A problem's solution: the channel values, the proof that they are optimal, and the constrained
-//! entries whose delta is infeasible.
+//! entries whose delta is infeasible. An entry is a response; its *delta* is the gain or delay that
+//! it needs, its *target* the nearest feasible value, to which it is constrained instead.
 
 use gdcm_model::dataset::{Pair, PairTable};
 

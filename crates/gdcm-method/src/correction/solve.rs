@@ -1,5 +1,9 @@
 //! Solver for eq. (7) and (11), and for signed delays (M15.4): finds the gains or delays with the
 //! minimum objective, and proves that they are optimal.
+//!
+//! An entry is a response; its *delta* is the gain or delay that it needs. In coordinates
+//! (logarithms of gains, or delays), each constrained entry prescribes the sum over its two
+//! channels. The box is given by the bounds; the *scales* are the coordinates that remain free.
 
 use gdcm_model::dataset::PairTable;
 

@@ -1,5 +1,6 @@
 //! How the objective changes if a single entry is toggled: constrained if it is free, released if
-//! it is constrained. The problem is solved again for each entry.
+//! it is constrained. The problem is solved again for each entry. An entry is a response; if
+//! constrained, its channels together give it exactly its delta, the gain or delay that it needs.
 
 use gdcm_model::dataset::Pair;
 

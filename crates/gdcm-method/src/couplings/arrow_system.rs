@@ -1,8 +1,9 @@
 //! Solves normal equations with an arrow matrix (M16.2).
 //!
-//! An `M_ji` appears only in the equations for input i, a `K_jo` in the equations for every input.
-//! The normal matrix therefore has a block for each input, and a border for K. The contributions to
-//! K are summed over the inputs before the substitution:
+//! The unknowns are the entries `M_ji` of the input mixing and `K_jo` of the output feedback. An
+//! `M_ji` appears only in the equations for input i, a `K_jo` in the equations for every input. The
+//! normal matrix therefore has a block for each input, and a border for K. The contributions to K
+//! are summed over the inputs before the substitution:
 //!
 //! ```text
 //! [ A_1            B_1 ]   [ M_1 ]   [ b_1 ]        1  A_i = L_i L_i^T,  W_i = L_i^-1 B_i,  y_i = L_i^-1 b_i  for every input i
@@ -59,6 +60,7 @@ impl ArrowSystem {
         let mut corner = self.corner.clone();
         let mut right = self.right.clone();
         let mut eliminated = Vec::with_capacity(self.columns.len());
+        // Step 1, and the sums of step 2
         for column in &self.columns {
             let column = EliminatedColumn::new(column)?;
             if !corner.is_empty() {
@@ -67,11 +69,13 @@ impl ArrowSystem {
             }
             eliminated.push(column);
         }
+        // Step 2
         let feedback = if corner.is_empty() {
             right
         } else {
             corner.cholesky()?.solve(&right)
         };
+        // Step 3
         let mut mixing = Vec::with_capacity(eliminated.len());
         for column in &eliminated {
             mixing.push(column.substitute(&feedback)?);

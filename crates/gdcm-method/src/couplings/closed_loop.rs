@@ -8,7 +8,8 @@
 //! 3  for each column j of H from the last: divide it by T_jj; from the columns k < j subtract T_jk times column j
 //! ```
 //!
-//! Both matrices are stored column by column: `T_jk` is at `k m + j`, `H_ok` at `k p + o`.
+//! `H` is the physics model's response, `K` the feedback from its outputs to its inputs. Both
+//! matrices are stored column by column: `T_jk` is at `k m + j`, `H_ok` at `k p + o`.
 //!
 //! Gaussian elimination with partial pivoting, by columns: Golub & Van Loan, "Matrix Computations",
 //! 4th ed. 2013, 3.4.

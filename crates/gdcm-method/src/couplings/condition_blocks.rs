@@ -1,8 +1,9 @@
 //! A condition's contribution to the normal equations `G theta = b` in a pass, assembled from small
 //! blocks; the design matrix's rows are not stored (M16.2).
 //!
-//! The pass minimises, over the entries `theta` in the mixing `M` (m x m) and the feedback `K` (m x
-//! p),
+//! The fit is a sequence of *passes*, linear least-squares problems whose weights and closed loop
+//! follow from the previous pass. A pass minimises, over the entries `theta` in the mixing `M` (m x
+//! m) and the feedback `K` (m x p),
 //!
 //! ```text
 //! sum q^2 |S R' - F M - F K R'|^2,    S = (I - H K_0)^-1,    F = S H

@@ -1,4 +1,5 @@
-//! A physics model with mixing and feedback as state-space matrices (M16.3).
+//! A physics model with mixing and feedback as state-space matrices (M16.3): inputs `u` and outputs
+//! `y` with `y = H (u' + K y)`, `u' = M~ u`.
 
 use nalgebra::{DMatrix, Dyn, LU};
 

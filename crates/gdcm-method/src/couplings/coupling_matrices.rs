@@ -1,5 +1,6 @@
-//! Input mixing `M~` and output feedback `K`, and their application to a frequency response (M16.3):
-//! `H~ = (I - H K)^-1 H M~`.
+//! Input mixing `M~` and output feedback `K`, and their application to a frequency response
+//! (M16.3): `H~ = (I - H K)^-1 H M~`, where `H` is the physics model's response with `m` inputs and
+//! `p` outputs.
 
 use nalgebra::{Complex, DMatrix};
 

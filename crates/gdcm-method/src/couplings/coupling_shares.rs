@@ -6,7 +6,8 @@
 //! mixing:    share of M_ij <- M~_ij;  between the cyclic inputs also as swashplate phase, atan M~_ij
 //! ```
 //!
-//! `R'` is the flight response without its channels' delays and leads.
+//! `M~` is the normalised input mixing (diagonal 1), `K` the output feedback, `R'` the flight
+//! response without its channels' delays and leads.
 
 use nalgebra::DMatrix;
 

@@ -1,4 +1,5 @@
-//! Reasons for a missing coupling fit.
+//! Reasons for a missing coupling fit: an input mixing `M` and an output feedback `K` that bring
+//! the physics models closer to flight in all conditions.
 
 use gdcm_model::dataset::ConditionId;
 use gdcm_model::progress::Cancelled;

@@ -61,6 +61,7 @@ pub fn fit_couplings(
 ) -> Result<CouplingFit, CouplingError> {
     problem.check()?;
     let airspeeds = problem.airspeeds()?;
+    // Step 1
     let fed_back = problem.fed_back();
     let unknowns = Unknown::list(problem, &airspeeds, &fed_back);
     let conditions = each(executor, &problem.conditions, |condition| {
@@ -80,10 +81,12 @@ pub fn fit_couplings(
         // Each pass has one step for each condition, and one for the solution.
         share: 1.0 / (solves * (conditions.len() + 1)) as f64,
     };
+    // Step 2
     let mut matrices = CouplingMatrices::none(airspeeds, problem.inputs(), problem.outputs());
     let mut coefficients = Vec::new();
     let mut residual = 0.0;
     let mut undetermined = Vec::new();
+    // Steps 3 to 5
     for _ in 0..solves {
         let pass = fitting
             .equations(&matrices, executor)?
@@ -95,6 +98,7 @@ pub fn fit_couplings(
         fitting.advance()?;
     }
     fitting.shares.next(1.0, FITTING)?;
+    // Step 6
     matrices.check()?;
     Ok(CouplingFit {
         matrices,
@@ -130,7 +134,7 @@ struct Fitting<'a> {
 }
 
 impl Fitting<'_> {
-    /// Returns the normal equations for the pass that starts from these couplings.
+    /// Returns the normal equations for the pass that starts from these couplings (step 4).
     ///
     /// As many conditions run in parallel as memory permits for their blocks; they are added in
     /// order.

@@ -1,5 +1,7 @@
 //! Flight data for the coupling fit: the response without its channels' delays and leads, and its
-//! standard deviation (M16.2).
+//! standard deviation (M16.2). `R` is the identified response with `p` outputs and `m` inputs;
+//! `L_o` and `L_i` are the delays or lead filters of its output and input channels, which mixing
+//! and feedback are not to reproduce.
 
 use std::f64::consts::LN_10;
 

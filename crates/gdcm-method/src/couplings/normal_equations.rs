@@ -7,9 +7,10 @@
 //!    an unknown with a zero on the diagonal, which no response determines, keeps its value in theta_0
 //! ```
 //!
-//! `G theta = b` are the equations for the entries `theta` in the mixing M and the feedback K
-//! (`condition_blocks`), `rho` is the relative regularisation. `arrow_system` defines how G's
-//! blocks are arranged, `unknown_layout` how the unknowns are ordered.
+//! A *pass* is one of the successive least-squares problems in the fit. `G theta = b` are the
+//! equations for the entries `theta` in the mixing M and the feedback K (`condition_blocks`), `rho`
+//! is the relative regularisation. `arrow_system` defines how G's blocks are arranged,
+//! `unknown_layout` how the unknowns are ordered.
 
 use nalgebra::{DMatrix, DVector};
 

@@ -1,4 +1,5 @@
-//! How mixing and feedback shift the poles (M16.4).
+//! How mixing of the inputs and feedback from outputs to inputs shift a physics model's poles
+//! (M16.4).
 
 use nalgebra::Complex;
 

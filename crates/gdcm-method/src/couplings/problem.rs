@@ -1,4 +1,7 @@
-//! Data and settings for the coupling fit (M16.1, M16.2).
+//! Data and settings for the coupling fit (M16.1, M16.2): an input mixing and an output feedback,
+//! common to all conditions, that bring the physics models closer to flight. A condition's
+//! *representatives* are the physics model and the identified model that stand for all of its
+//! models (M5).
 
 use std::sync::Arc;
 

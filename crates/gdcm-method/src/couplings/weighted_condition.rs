@@ -13,7 +13,9 @@
 //! | `w_gamma^2` | weight from the coherence (M4a) |
 //! | `e^2` | summand of J: squared errors of `H_c` against `R'` in dB and deg (M4) |
 //!
-//! `s` and `w_gamma` are the same in all passes; `|H_c|` and `e` change.
+//! A *pass* is one of the successive least-squares problems in the fit. `s` and `w_gamma` are the
+//! same in all passes; `|H_c|` and `e` change. The last factor of `q` is small where the error is
+//! large, so that outliers do not dominate.
 
 use nalgebra::Complex;
 

@@ -19,6 +19,7 @@ pub(crate) fn cheapest_assignment(
     columns: usize,
     cost: impl Fn(usize, usize) -> f64,
 ) -> Vec<usize> {
+    // Step 1: zero at first; `augment` makes the inequality hold for the row that it adds.
     let mut assignment = Assignment {
         row_potentials: vec![0.0; rows],
         column_potentials: vec![0.0; columns],
@@ -75,6 +76,7 @@ impl Assignment {
             let Some(next) = open.min_by(|&a, &b| distance[a].total_cmp(&distance[b])) else {
                 return;
             };
+            // Step 2
             self.shift_potentials(new, &in_tree, &mut distance, next);
             in_tree[next] = true;
             last = Some(next);
@@ -83,6 +85,7 @@ impl Assignment {
                 None => break,
             }
         }
+        // Step 3
         self.shift_assignments(new, &before, last);
     }
 

@@ -1,4 +1,6 @@
-//! Cost J for a mismatch between two responses, eq. (14)-(19).
+//! Cost J for a mismatch between two responses, eq. (14)-(19): `J = 20 average(W_g e_dB^2) + 20
+//! average(W_p e_deg^2)`, where `e_dB` and `e_deg` are the errors in magnitude and phase of a
+//! simulated response against its reference at each frequency.
 
 use std::f64::consts::{PI, TAU};
 

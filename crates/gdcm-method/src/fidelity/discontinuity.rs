@@ -1,5 +1,7 @@
 //! Models beyond a discontinuity in the physics bundle: models that are further from the others
-//! than their perturbed trim explains (M5).
+//! than their perturbed trim explains (M5). A *bundle* is a condition's models, linearised at the
+//! trim and at perturbed trims; the *distance* `d(a, b)` of two of them is the root of the mean
+//! cost J over the on-axis responses (`distance`).
 
 use std::collections::BTreeMap;
 

@@ -3,6 +3,9 @@
 //! ```text
 //! d(a, b) = sqrt(mean over the compared responses of J(a against b)),   J with the mean over frequency
 //! ```
+//!
+//! A *bundle* is a condition's physics models, or its identified models; J is the cost of the
+//! errors in magnitude and phase (`cost`).
 
 use gdcm_model::dataset::{Pair, PairTable};
 use gdcm_model::response::PolarResponse;

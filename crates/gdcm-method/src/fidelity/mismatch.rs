@@ -4,8 +4,9 @@
 //! e_dB = |H_sim|_dB - |H_ref|_dB,   Delta phi = arg(H_sim conj(H_ref)), unwrapped over frequency (M3, M6b)
 //! ```
 //!
-//! The errors cover the *grid*, all compared frequencies, or only the frequencies with a coherence
-//! weight (M4a). Functions that take `omega` or `grid` expect the whole grid.
+//! `H_sim` is the simulated response, `H_ref` its reference. The errors cover the *grid*, all
+//! compared frequencies, or only the frequencies with a coherence weight (M4a). Functions that take
+//! `omega` or `grid` expect the whole grid.
 
 use std::f64::consts::{PI, TAU};
 

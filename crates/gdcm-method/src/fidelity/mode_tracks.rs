@@ -50,6 +50,7 @@ pub fn mode_tracks(models: &[&[Mode]], reference: usize) -> Vec<ModeTrack> {
     let Some(reference_modes) = models.get(reference).copied() else {
         return Vec::new();
     };
+    // Step 1
     let matches: Vec<Vec<Option<usize>>> = models
         .iter()
         .map(|model| matched(reference_modes, model))
@@ -62,7 +63,7 @@ pub fn mode_tracks(models: &[&[Mode]], reference: usize) -> Vec<ModeTrack> {
             .zip(&modes)
             .map(|(model, mode)| mode.map(|mode| model[mode].pole))
             .collect();
-        // The conjugate mode's track covers both.
+        // Step 2: the conjugate mode's track covers both.
         let is_mirror =
             reference_mode.pole.im < 0.0 && poles.iter().flatten().all(|pole| pole.im < 0.0);
         if !is_mirror {
@@ -72,7 +73,7 @@ pub fn mode_tracks(models: &[&[Mode]], reference: usize) -> Vec<ModeTrack> {
     tracks
 }
 
-/// Computes a reference mode's track from its match in each model.
+/// Computes a reference mode's track from its match in each model (steps 3 and 4).
 fn track(reference: usize, modes: Vec<Option<usize>>, poles: &[Option<Complex<f64>>]) -> ModeTrack {
     let known: Vec<Complex<f64>> = poles.iter().flatten().copied().collect();
     let mut real_parts: Vec<f64> = known.iter().map(|pole| pole.re).collect();
@@ -98,8 +99,8 @@ fn track(reference: usize, modes: Vec<Option<usize>>, poles: &[Option<Complex<f6
     }
 }
 
-/// Returns the match in `model` for each mode in `reference`; `None` for a mode without a match in
-/// a smaller model. The assignment's rows are the smaller model's modes.
+/// Step 1: returns the match in `model` for each mode in `reference`; `None` for a mode without a
+/// match in a smaller model. The assignment's rows are the smaller model's modes.
 fn matched(reference: &[Mode], model: &[Mode]) -> Vec<Option<usize>> {
     let mut matches = vec![None; reference.len()];
     if reference.len() <= model.len() {

@@ -18,6 +18,7 @@ const COARSE: i32 = 16;
 ///    there: it rises by at most sum omega per second, because |dL / d delay| <= sum omega
 /// ```
 pub(super) fn nearest_pure_delay_s(phase: &[f64], omega: &[f64]) -> f64 {
+    // Step 1
     let coarse_steps: Vec<i32> = (-STEPS..=STEPS + COARSE / 2)
         .step_by(COARSE as usize)
         .collect();
@@ -32,6 +33,7 @@ pub(super) fn nearest_pure_delay_s(phase: &[f64], omega: &[f64]) -> f64 {
     // rounding error.
     let rise = delay_s(COARSE / 2) * omega.iter().map(|omega| omega.abs()).sum::<f64>()
         + 1e-9 * phase.len() as f64;
+    // Step 2
     let mut best_likeness = f64::NEG_INFINITY;
     let mut best_s = 0.0;
     for (step, likeness) in coarse_steps.into_iter().zip(coarse) {

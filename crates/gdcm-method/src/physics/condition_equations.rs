@@ -11,9 +11,11 @@
 //! 4  c(x) = w U^-1 (h - B' x)
 //! ```
 //!
-//! Shared unknowns: the fitted parameters, the output delays, the input delays. Own unknowns: the
-//! output ln gains, then the input ln gains. The target `y`, the design matrix `J`, `nu`, `N` and
-//! `s^2` are those of step 7 in `physics`.
+//! A *block* holds the weighted products of a response's design matrix `J` and target `y` in one
+//! third of the frequencies (`pair_blocks`). Shared unknowns: the fitted parameters, the output
+//! delays, the input delays. Own unknowns: the output ln gains, then the input ln gains; `sd_gain`
+//! is their prior standard deviation. `nu` is how many independent frequencies a response counts
+//! as, `N` the number of frequencies, `s^2` the mean square misfit (step 7 in `physics`).
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
@@ -161,12 +163,13 @@ impl ConditionEquations {
                 own: None,
             });
         }
+        // Step 2
         let mut own = &self.own * w;
         for channel in 0..own.nrows() {
             own[(channel, channel)] += scale.gain_sd.powi(-2);
         }
         let own = Cholesky::new(own)?;
-        // w U^-1 B' and w U^-1 h.
+        // Step 3: w U^-1 B' and w U^-1 h.
         let eliminated = own.solve(&(self.border.transpose() * w));
         let eliminated_right = own.solve(&(&self.own_right * w));
         let mut matrix = (&self.shared - &self.border * &eliminated) * w;

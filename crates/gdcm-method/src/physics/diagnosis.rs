@@ -1,4 +1,11 @@
 //! The whole diagnosis: values with intervals, names and verdict, as typed facts (M18.2 to M18.4).
+//!
+//! A parameter's value `z` is its change divided by the change that the engineer considers
+//! plausible, its *plausible standard deviation*, which is also its prior standard deviation. A
+//! *score* is the misfit of conditions that are left out of the fit, its *ratio* relative to the
+//! score without parameters (`score`). A parameter is *named*, as one that would have to move, if
+//! its value differs from zero and helps to predict left-out conditions; the *verdict* states how
+//! much all parameters explain together (`verdict`).
 
 use nalgebra::DVector;
 
@@ -182,15 +189,20 @@ pub fn diagnose(
 ) -> Result<PhysicsDiagnosis, PhysicsError> {
     let shares = Shares::new(progress);
     let portion = Portion::new(&shares, PASSES_SHARE, SCORING);
+    // Steps 1 to 8
     let SolvedFit { fit, equations } = solve(problem, executor, &portion)?;
     portion.finish()?;
+    // Step 11
     let identifiability = Identifiability::new(&equations)?;
+    // Step 9
     let intervals = Intervals::new(&equations, &identifiability.inverse, problem.options.level)?;
     shares.next(PASSES_SHARE, SCORING)?;
+    // Step 10
     let scores = Scores::new(&equations, &fit.fitted);
     shares.next(1.0, SCORING)?;
     let explained = scores.as_ref().map(Scores::explained);
     let spread = equations.spread();
+    // Step 12
     let verdict = match explained {
         Some(explained) if !intervals.half_widths.is_empty() => {
             Some(Verdict::new(explained, fit.misfit, spread))

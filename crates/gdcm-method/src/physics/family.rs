@@ -7,6 +7,11 @@
 //! X = (j omega I - A)^-1 B,   Y = C (j omega I - A)^-1
 //! ```
 //!
+//! A *run* is a model linearised with parameter k moved, its *base* the same model with the
+//! parameter nominal. `z_k` is the parameter's change divided by its plausible standard deviation;
+//! `L_k` and `Q_k` are the linear and the quadratic change of A in `z_k`, found from the runs
+//! (`increments`), likewise of B, C and D.
+//!
 //! In discrete time, `j omega` is `e^(j omega T)`; 1 is subtracted from it and I from A, which
 //! leaves `j omega I - A` unchanged. Channel delays multiply H and its derivatives. A
 //! representative with other states than the runs' base has no increments for its matrices; its

@@ -1,4 +1,10 @@
-//! Fits the parameters to all conditions at once (steps 2 to 8 in `physics`, M18.2).
+//! Fits the parameters to all conditions at once (steps 2 to 8 in `physics`, M18.2), by a sequence
+//! of *passes*: each linearises the logarithms of the responses at the present *point*, the values
+//! of all unknowns, and solves the normal equations.
+//!
+//! The unknowns are the parameter values `z`, in plausible standard deviations, the channel delays
+//! `tau`, and each condition's channel ln gains `a`, `b`. `R` is the identified response, `H^` the
+//! physics response at the point, `q` a weight, `s` the misfit.
 
 use gdcm_model::executor::{Executor, each};
 use gdcm_model::progress::{Progress, Shares};
@@ -89,6 +95,7 @@ pub(super) fn solve(
     problem.check()?;
     let fitting = Fitting::new(problem, executor, progress);
     let count = problem.conditions.len();
+    // Step 1
     let mut point = FitPoint::new(
         problem.initial_values(),
         problem.inputs(),
@@ -98,6 +105,7 @@ pub(super) fn solve(
     let mut passes: Vec<FitPass> = Vec::new();
     let mut still_moving = None;
     for pass in 1..=problem.options.passes.max(1) {
+        // Steps 2 and 3
         let equations = fitting.equations(&point)?;
         still_moving = point.step_to(&equations.solution(&point, &fitting.fitted)?);
         passes.push(FitPass {
@@ -105,10 +113,12 @@ pub(super) fn solve(
             misfit_square: equations.misfit_square,
             weighted_square: equations.weighted_square,
         });
+        // Step 4
         if still_moving.is_none() && pass >= FEWEST_PASSES {
             break;
         }
     }
+    // Step 5
     let equations = fitting.equations(&point)?;
     fitting.shares.next(1.0, FITTING)?;
     Ok(SolvedFit {

@@ -7,8 +7,9 @@
 //! correlation of k and l   (P^-1)_kl / sqrt((P^-1)_kk (P^-1)_ll)
 //! ```
 //!
-//! `F` is the parameters' normal matrix after eliminating delays and ln gains (`shared_system`): the
-//! information in the data. `I` is the prior's.
+//! `F` is the parameters' normal matrix after eliminating delays and ln gains (`shared_system`):
+//! the information in the data. `I` is the prior's, because the values are in plausible standard
+//! deviations. With the channels "known", their gains and delays are not unknowns.
 
 use nalgebra::{Cholesky, DMatrix};
 

@@ -8,8 +8,9 @@
 //! A(z) = A + sum_k (z_k L_k + z_k^2 Q_k);   B, C and D likewise
 //! ```
 //!
-//! `z_k` is parameter k's change divided by its plausible standard deviation, `A_0` the matrix in
-//! the runs' base.
+//! A *run* is a model linearised with one parameter moved, its *base* the model at the same trim
+//! with the parameter nominal. `z_k` is parameter k's change divided by its plausible standard
+//! deviation, `A_0` the matrix in the runs' base, `A_1` and `A_2` those in the runs.
 
 use std::sync::Arc;
 

@@ -7,10 +7,11 @@
 //! half-width = t(n_c - 1) sqrt(V)
 //! ```
 //!
-//! `z_(-i)` solves the stored normal equations without member i, with `s^2` unchanged; `t` is
-//! Student's quantile, `n_c` the number of conditions with data. `F` is the parameters' normal
-//! matrix after eliminating all channels. The last term accounts for the prior: a parameter that
-//! the data do not determine gets a wide interval, not a narrow one around zero.
+//! `z` is a parameter's value in plausible standard deviations. `z_(-i)` solves the stored normal
+//! equations without member i, with `s^2` unchanged; `t` is Student's quantile, `n_c` the number of
+//! conditions with data. `F` is the parameters' normal matrix after eliminating all channels. The
+//! last term accounts for the prior: a parameter that the data do not determine gets a wide
+//! interval, not a narrow one around zero.
 //!
 //! B. Efron, "The Jackknife, the Bootstrap and Other Resampling Plans", SIAM 1982, chapter 3.
 

@@ -8,9 +8,11 @@
 //! y = ln(R / H^) + sum_k d_k z_k - j omega (tau_o + tau_i) + (a_oc + b_ic)
 //! ```
 //!
-//! with the present pass's values in `y`. With `v = (d_1, ..., d_K, -j omega, 1, y)`, a block is
-//! `sum q^2 Re(conj(v) v')` over a third's frequencies: all later sums, with or without a
-//! condition, output, input or third, are sums of blocks.
+//! with the present pass's values in `y`. `R` is the identified response, `H` the physics response,
+//! `H^` the same with channel gains and delays, `q` the weight of the response at a frequency. With
+//! `v = (d_1, ..., d_K, -j omega, 1, y)`, a block is `sum q^2 Re(conj(v) v')` over a third's
+//! frequencies: all later sums, with or without a condition, output, input or third, are sums of
+//! blocks.
 
 use nalgebra::Complex;
 

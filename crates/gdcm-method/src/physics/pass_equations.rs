@@ -1,5 +1,10 @@
 //! Normal equations in a pass, summed over the conditions, and their solution (steps 6 and 7 in
-//! `physics`, M18.2).
+//! `physics`, M18.2). A *block* holds the weighted products of a response's residuals and
+//! derivatives in one third of the frequencies (`pair_blocks`).
+//!
+//! `R` is the identified response, `H^` the physics response with parameters and channels at the
+//! present point, `q` a weight, `s` the misfit. The factor `w` makes a response count as `nu`
+//! independent frequencies, not as the `N` in the grid, and relates the squares to the misfit.
 
 use nalgebra::DVector;
 
@@ -51,6 +56,7 @@ impl PassEquations {
         parameters: usize,
         blocks: Vec<ConditionBlocks>,
     ) -> Result<Self, PhysicsError> {
+        // Step 1
         let mut weighted_square = 0.0;
         let mut weight = 0.0;
         for condition in &blocks {
@@ -74,6 +80,7 @@ impl PassEquations {
             weight: options.independent_frequencies / (problem.omega.len() as f64 * misfit_square),
             gain_sd: options.gain_sd,
         };
+        // Steps 2 and 3
         let mut system = SharedSystem::new(counts, options.delay_sd_s);
         let mut conditions = Vec::with_capacity(blocks.len());
         let mut reduced = Vec::with_capacity(blocks.len());

@@ -1,4 +1,7 @@
-//! Data and settings for the parameter fit (M18.2).
+//! Data and settings for the parameter fit (M18.2): which named parameters of the physics model
+//! would have to move so that it matches flight. A *representative* is the model that stands for a
+//! condition's physics or identified models (M5). A parameter's *plausible standard deviation* is
+//! the change that the engineer considers plausible.
 
 use std::sync::Arc;
 

@@ -8,6 +8,9 @@
 //! 4  X = Q X~,  Y = Y~ Q'                                              all points at once
 //! ```
 //!
+//! `Q` is orthogonal, `U` upper triangular, `E` the product of the row operations in step 2. X and
+//! Y are needed for the response's derivatives (`family`).
+//!
 //! Golub & Van Loan, "Matrix Computations", 4th ed. 2013, 4.3.4 and 7.4.
 
 use nalgebra::linalg::Hessenberg;

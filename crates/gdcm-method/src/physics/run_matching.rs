@@ -1,8 +1,16 @@
-//! Matches a condition's runs with their bases (step 1 in `physics`, M18.1).
+//! Matches a condition's runs with their bases (step 1 in `physics`, M18.1). A *run* is a physics
+//! model linearised with one parameter moved.
 //!
 //! A run's base is the condition's physics model with equal perturbation values; if there are
 //! several, the nominal model, or else the first. Run and base must have the same states in the
 //! same order, the same channels, sample time and delays.
+//!
+//! ```text
+//! 1  each run of an offered parameter: find its base, check that both fit together  (checked_run)
+//! 2  compare it with the parameter's earlier runs: other step, other matrices, at most two
+//! 3  keep the run, or refuse it with the first fault found
+//! 4  increments, or the family of the representative, from the runs that are kept
+//! ```
 
 use std::collections::BTreeMap;
 
@@ -83,8 +91,10 @@ impl<'a> MatchedRuns<'a> {
             else {
                 continue;
             };
+            // Steps 1 and 2
             let run = checked_run(condition, &moved.model, change, parameter, is_used)
                 .and_then(|run| matched.check_earlier_runs(run));
+            // Step 3
             match run {
                 Ok(run) => matched.runs.push(run),
                 Err(reason) => matched.refused.push(RefusedRun {
@@ -97,7 +107,7 @@ impl<'a> MatchedRuns<'a> {
         matched
     }
 
-    /// Checks a run against earlier runs for the same parameter.
+    /// Step 2: checks a run against earlier runs for the same parameter.
     fn check_earlier_runs(&self, run: MatchedRun<'a>) -> Result<MatchedRun<'a>, RunRefusal> {
         let mut count = 0;
         for earlier in &self.runs {
@@ -120,7 +130,7 @@ impl<'a> MatchedRuns<'a> {
         Ok(run)
     }
 
-    /// Computes the condition's increments, ordered as `parameters`.
+    /// Step 4: computes the condition's increments, ordered as `parameters`.
     ///
     /// # Errors
     /// [`ConditionOmission`] if the condition or a parameter has no run, or if the runs give no
@@ -138,8 +148,8 @@ impl<'a> MatchedRuns<'a> {
         )?)
     }
 
-    /// Computes the family for the condition's representative: by matrices if it has the same
-    /// states as the base, otherwise by responses on the grid `omega` \[rad/s\].
+    /// Step 4: computes the family for the condition's representative: by matrices if it has the
+    /// same states as the base, otherwise by responses on the grid `omega` \[rad/s\].
     ///
     /// # Errors
     /// As for [`Self::increments`].
@@ -185,8 +195,9 @@ impl<'a> MatchedRuns<'a> {
     }
 }
 
-/// Finds a run's base, and checks that both fit together. The first fault counts: step, unit, base,
-/// use of the base, matrices, shape and states, timing, and matrices that do not change.
+/// Step 1: finds a run's base, and checks that both fit together. The first fault counts: step,
+/// unit, base, use of the base, matrices, shape and states, timing, and matrices that do not
+/// change.
 fn checked_run<'a>(
     condition: &'a Condition,
     model: &'a Model,

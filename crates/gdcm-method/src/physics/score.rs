@@ -7,6 +7,10 @@
 //! 3  ratio <- score over the score with no parameter
 //! 4  alone: each parameter;  stepwise: add the one that lowers the ratio most, until all are in
 //! ```
+//!
+//! `z` are the parameter values, `tau` the channel delays, common to all conditions; `a`, `b` are a
+//! condition's channel ln gains. `y - J x` are the residuals of the linearised fit, `q` their
+//! weights.
 
 use super::pass_equations::PassEquations;
 use super::shared_system::SharedSystem;
@@ -60,6 +64,7 @@ impl Scores {
         if baseline.is_nan() || baseline <= 0.0 {
             return None;
         }
+        // Steps 3 and 4
         let mut alone = Vec::with_capacity(fitted.len());
         for index in 0..fitted.len() {
             alone.push(Score::new(scorer.score(&[index])?, baseline).ratio);

@@ -4,6 +4,10 @@
 //! (sum_c S'_c + prior) x = sum_c g'_c,   prior: 1 for a parameter, 1 / sd_delay^2 for a delay
 //! ```
 //!
+//! `x` are the parameter values (in plausible standard deviations, hence the prior 1) and the
+//! channel delays. `S'_c` and `g'_c` are the normal matrix and the right-hand side of condition c
+//! after the elimination of its ln gains (`condition_equations`).
+//!
 //! Delays are fixed at zero if their prior standard deviation is 0, and so are the parameters that
 //! `solve_for` leaves out.
 

@@ -1,10 +1,11 @@
 //! Decides which parameters are named, and how much they explain together (step 12 in `physics`,
 //! M18.4).
 //!
-//! A parameter is named if all of these are true: its interval excludes 0; its step in the stepwise
-//! list lowers the ratio by 0.01 or more; `|z| < 3`; explained is 0.1 or more; four conditions or
-//! more are in the fit. Ratio, stepwise list and explained share are those of `score`, the learned
-//! share that of `identifiability`.
+//! `z` is a parameter's change in plausible standard deviations. A parameter is named if all of
+//! these are true: its interval excludes 0; its step in the stepwise list lowers the ratio by 0.01
+//! or more; `|z| < 3`; explained is 0.1 or more; four conditions or more are in the fit. Ratio,
+//! stepwise list and explained share are those of `score`, the learned share that of
+//! `identifiability`.
 
 use super::intervals::LEAST_CONDITIONS;
 use super::problem::GREATEST_VALUE;

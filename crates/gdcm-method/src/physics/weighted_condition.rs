@@ -9,6 +9,11 @@
 //! q^2 <- squared weight of the response at the frequency;  block += q^2 Re(conj(v) v')
 //! ```
 //!
+//! `R` is the identified response, `H` the physics response, `H^` the same with the channels'
+//! delays `tau` and ln gains `a`, `b`; `z_k` is the value of parameter k. `y` is the logarithm that
+//! a linear function of all unknowns has to match. A *block* sums the products over a third of the
+//! frequencies.
+//!
 //! A response or derivative that is missing or not finite has no weight.
 
 use nalgebra::Complex;

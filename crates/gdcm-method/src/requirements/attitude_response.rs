@@ -2,7 +2,7 @@
 //! read (M17.1): magnitude and continuous phase.
 //!
 //! ```text
-//! Theta = H / (j omega) for a rate, H for an attitude
+//! Theta = H / (j omega) for a rate, H for an attitude;  H: response of the output to the input
 //! 1  evaluate Theta on the grid; keep the longest run of values without a gap
 //! 2  unwrap the phase, and add whole turns so that it is in (-270, 90] deg at the lowest frequency of the band
 //! 3  between grid points: evaluate Theta exactly, on the branch of the neighbouring phases
@@ -143,6 +143,7 @@ impl<'a> AttitudeResponse<'a> {
         omega: &[f64],
         band: Band,
     ) -> Result<Self, AttitudeResponseError> {
+        // Step 1
         let polar = polar(response, output, omega);
         let known = longest_run(&polar);
         if known.len() < 2 {
@@ -157,6 +158,7 @@ impl<'a> AttitudeResponse<'a> {
             magnitude_db.push(polar.magnitude_db);
             phase.push(polar.phase);
         }
+        // Step 2
         unwrap(&mut phase);
         let omega = omega[known].to_vec();
         let lowest_of_band = omega
@@ -208,7 +210,7 @@ impl<'a> AttitudeResponse<'a> {
     }
 
     /// Returns the phase \[rad\] at `omega` \[rad/s\] on the same branch as the surrounding grid
-    /// points; `None` outside the grid or without a response.
+    /// points (step 3); `None` outside the grid or without a response.
     pub fn phase_at(&self, omega: f64) -> Option<f64> {
         let near = between(&self.omega, &self.phase, omega)?;
         let principal = polar(self.response, self.output, &[omega])[0]?.phase;
@@ -216,9 +218,9 @@ impl<'a> AttitudeResponse<'a> {
     }
 
     /// Returns the phases \[rad\] at the ascending frequencies `omega` \[rad/s\], unwrapped from
-    /// `first`, the phase at the first frequency; `None` if a response is missing. The frequencies
-    /// may extend beyond the grid. The last phase is evaluated exactly, the others from the
-    /// samples set by [`Self::sampled_by`], if any.
+    /// `first`, the phase at the first frequency (step 4); `None` if a response is missing. The
+    /// frequencies may extend beyond the grid. The last phase is evaluated exactly, the others from
+    /// the samples set by [`Self::sampled_by`], if any.
     pub fn phases_from(&self, first: f64, omega: &[f64]) -> Option<Vec<f64>> {
         let (last, before) = omega.split_last()?;
         let mut found = polar(self.samples, self.output, before);

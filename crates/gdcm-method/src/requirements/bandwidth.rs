@@ -14,6 +14,9 @@
 //! 7  above: least-squares line through Phi over omega; tau_p = its phase loss from omega_180 to 2 omega_180, over 2 omega_180
 //! ```
 //!
+//! `H` is the response of the output to the input, `Theta` the attitude response, `Phi` its phase,
+//! `omega_BW` the bandwidth, `tau_p` the phase delay.
+//!
 //! ADS-33E-PRF, "Handling qualities requirements for military rotorcraft", 2000, 3.3.2.1 and figure
 //! 4; MIL-DTL-32742. `attitude_response` does step 1, `phase_delay` steps 5 to 7; standard
 //! deviations come from `bandwidth_deviation`. A number read above the band is marked, or refused
@@ -102,10 +105,14 @@ impl Bandwidth {
             settings,
             deviation,
         };
+        // Step 2
         let omega_180 = reading.phase_crossing(NEUTRAL_DEG);
         let omega_phase = reading.phase_crossing(PHASE_MARGIN_DEG);
+        // Step 3
         let omega_gain = omega_180.and_then(|omega_180| reading.gain_crossing(omega_180));
+        // Step 4
         let margin = reading.limiting_margin(omega_180, omega_phase, omega_gain);
+        // Steps 5 to 7
         let phase_delay = omega_180.and_then(|omega_180| reading.phase_delay(omega_180));
         Self {
             omega_180,

@@ -9,7 +9,8 @@
 //!
 //! `m` is the magnitude \[dB\]; primes mark derivatives with respect to omega; `sd_dB` and
 //! `sd_phase` are standard deviations of the response's magnitude and phase, `sd(omega_180)` that
-//! of the phase crossing. The frequencies are defined in `bandwidth`.
+//! of the phase crossing. `omega_180` is the frequency at which the phase `Phi` is -180 deg,
+//! `omega_gain` the one at which the magnitude is 6 dB above that at `omega_180` (`bandwidth`).
 //!
 //! The phase delay follows its formula `-(Phi(2 omega_180) + pi) / (2 omega_180)`, with `omega_180`
 //! shifted by the phase error at `omega_180`: exact to first order if the phase is linear between

@@ -1,4 +1,5 @@
-//! A frequency or delay read from a response, and the reasons for its absence (M17.1).
+//! A frequency or delay read from a response, such as the bandwidth or the phase delay
+//! (`bandwidth`), and the reasons for its absence (M17.1).
 
 use gdcm_model::units::number;
 

@@ -10,8 +10,9 @@
 //!       +---------+----------+---------- omega_BW
 //! ```
 //!
-//! A point meets Level n if it lies on the Level n boundary or to its right, and is assigned the
-//! lowest number n that it meets. If it does not meet the highest number N, its level is N + 1.
+//! `omega_BW` is the bandwidth, `tau_p` the phase delay; Level 1 is the best. A point meets Level n
+//! if it lies on the Level n boundary or to its right, and is assigned the lowest number n that it
+//! meets. If it does not meet the highest number N, its level is N + 1.
 
 use serde::{Deserialize, Serialize};
 

@@ -12,6 +12,9 @@
 //!    within: period, and time to half or double amplitude or damping ratio, each within its tolerance (mode_tolerance) | outside
 //! ```
 //!
+//! A *flown* mode is a mode of the model identified from flight; M14.5 estimates the standard
+//! deviations of its pole.
+//!
 //! 14 CFR part 60, appendix C, table C2A, 2.c.3.a and 2.d.3.a.
 
 use nalgebra::Complex;
@@ -110,6 +113,7 @@ pub fn compare_modes(
     band: Band,
     tolerances: &ModeToleranceTable,
 ) -> Vec<ModeRow> {
+    // Step 1
     let models: Vec<PairedModel<'_>> = models
         .iter()
         .map(|&model| PairedModel {
@@ -117,6 +121,7 @@ pub fn compare_modes(
             pairs: mode_pairs(flown.modes, model.modes, band.min()),
         })
         .collect();
+    // Step 2
     let flown_modes = single_modes(flown.modes);
     let mut namings: Vec<Naming> = Vec::new();
     for (row, &mode) in flown_modes.iter().enumerate() {
@@ -128,6 +133,7 @@ pub fn compare_modes(
         estimates,
         band,
     };
+    // Steps 3 to 5
     let mut rows = Vec::new();
     for (row, naming) in namings.into_iter().enumerate() {
         let tolerance = naming.name.and_then(|name| tolerances.row_for(name));
@@ -183,7 +189,7 @@ struct FlownMode {
 }
 
 impl FlownModel<'_> {
-    /// Evaluates the mode with this index and its uncertainty.
+    /// Evaluates the mode with this index and its uncertainty (steps 3 and 4).
     fn mode(&self, index: usize, tolerance: Option<&ModeTolerance>) -> FlownMode {
         let mode = &self.modes[index];
         let compared = ComparedMode::new(index, mode);
@@ -272,7 +278,7 @@ fn keep_surest_names(namings: &mut [Naming]) {
     }
 }
 
-/// Returns the verdict on a model's counterpart to a flown mode.
+/// Returns the verdict on a model's counterpart to a flown mode (step 5).
 fn verdict(
     flown: &FlownMode,
     counterpart: Option<&ComparedMode>,

@@ -15,7 +15,7 @@
 //!    real: below 0.5 rad/s spiral; 1 to 10 rad/s roll subsidence
 //! ```
 //!
-//! A mode that meets no rule has no name.
+//! A state's *participation* is its share in a mode. A mode that meets no rule has no name.
 //!
 //! u, v, w are velocities along the body axes, p, q, r the angular rates about them, and phi, theta,
 //! psi the bank, pitch and heading angles.

@@ -1,5 +1,5 @@
 //! Pairs a model's modes with flown modes: close in the s-plane and similar in shape over the
-//! outputs (M17.3).
+//! outputs (M17.3). A *flown* mode is a mode of the model identified from flight.
 //!
 //! ```text
 //! 1  mode: a real pole, or the upper pole of a conjugate pair
@@ -43,15 +43,15 @@ pub(super) struct ModePair {
     pub(super) cost: f64,
 }
 
-/// Returns mode indices, each conjugate pair once.
+/// Returns mode indices, each conjugate pair once (step 1).
 pub(super) fn single_modes(modes: &[Mode]) -> Vec<usize> {
     (0..modes.len())
         .filter(|&index| modes[index].pole.im >= 0.0)
         .collect()
 }
 
-/// Returns a partner in `model` for each of the [`single_modes`] in `flown`; `None` if unpaired. No
-/// mode is a partner twice. `least_rad_s` is `omega_min`.
+/// Returns a partner in `model` for each of the [`single_modes`] in `flown` (step 4); `None` if
+/// unpaired. No mode is a partner twice. `least_rad_s` is `omega_min`.
 pub(super) fn mode_pairs(
     flown: &[Mode],
     model: &[Mode],
@@ -82,7 +82,7 @@ pub(super) fn mode_pairs(
     pairs
 }
 
-/// Returns `d + 1 - c` for two modes; `None` if they cannot be a pair.
+/// Returns `d + 1 - c` for two modes (step 3); `None` if they cannot be a pair.
 fn pair_cost(flown: &Mode, model: &Mode, scales: &[f64], least_rad_s: f64) -> Option<f64> {
     let largest = flown
         .frequency_rad_s
@@ -99,8 +99,8 @@ fn pair_cost(flown: &Mode, model: &Mode, scales: &[f64], least_rad_s: f64) -> Op
     }
 }
 
-/// Returns `s_i` for each output, over all flown poles: both poles in a conjugate pair count. Zero
-/// if no pole has a residue in the output.
+/// Step 2: returns `s_i` for each output, over all flown poles: both poles in a conjugate pair
+/// count. Zero if no pole has a residue in the output.
 fn output_scales(flown: &[Mode], least_rad_s: f64) -> Vec<f64> {
     let mut squares: Vec<f64> = Vec::new();
     for mode in flown {

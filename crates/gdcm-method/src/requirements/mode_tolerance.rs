@@ -1,4 +1,5 @@
-//! User-defined tolerances on modes (M17.3).
+//! User-defined tolerances on modes (M17.3): how far a model's mode may be from the *flown* mode,
+//! the mode of the model identified from flight.
 //!
 //! The default table follows 14 CFR part 60, appendix C, table C2A, 2.c.3.a and 2.d.3.a.
 

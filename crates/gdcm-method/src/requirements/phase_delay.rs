@@ -1,5 +1,6 @@
-//! Phase delay from the phase between `omega_180`, where it is -180 deg, and `2 omega_180` (steps 5 to
-//! 7 in `bandwidth`, M17.1).
+//! Phase delay from the phase between `omega_180`, where it is -180 deg, and `2 omega_180` (steps 5
+//! to 7 in `bandwidth`, M17.1). `Phi` is the phase of the attitude response, its *chord* the line
+//! between its ends.
 //!
 //! ```text
 //! tau_p = -(Phi(2 omega_180) + pi) / (2 omega_180), if the phase Phi departs from its chord by at most 10 deg

@@ -21,7 +21,8 @@ pub(super) fn root_between([low, high]: [f64; 2], value: impl Fn(f64) -> Option<
     let mut fraction = 0.5;
     loop {
         let new = Sample::new(a.omega + fraction * (b.omega - a.omega), &value);
-        // The bracket keeps the end with the other sign, which becomes or remains b; c is dropped.
+        // Step 1: the bracket keeps the end with the other sign, which becomes or remains b; c is
+        // dropped.
         let c = if new.is_positive() == a.is_positive() {
             a
         } else {
@@ -35,6 +36,7 @@ pub(super) fn root_between([low, high]: [f64; 2], value: impl Fn(f64) -> Option<
         if least > 0.5 || best.value == 0.0 || !least.is_finite() {
             return best.omega;
         }
+        // Steps 2 and 3
         fraction = if is_monotonic(a, b, c) {
             quadratic_fraction(a, b, c).clamp(least, 1.0 - least)
         } else {

@@ -1,5 +1,7 @@
 //! A model's response sampled once on the search frequencies and interpolated between them, so that
-//! bandwidths under many corrections need no further model evaluation (M17.1).
+//! bandwidths under many corrections need no further model evaluation (M17.1). The *search
+//! frequencies* are those on which the crossings of phase and magnitude are searched, in and around
+//! the band.
 
 use nalgebra::Complex;
 

@@ -8,7 +8,9 @@
 //! MUAD:   1 - sum ln(b/a) / ln(omega_N/omega_1) over the ranges (a, b) in which the error leaves an envelope
 //! ```
 //!
-//! `y` are the flown and `y^` the simulated outputs; the band extends from `omega_1` to `omega_N`.
+//! MUAD is the maximum unnoticeable added dynamics: envelopes in magnitude and phase inside which
+//! pilots do not notice an error. `y` are the flown and `y^` the simulated outputs; the band
+//! extends from `omega_1` to `omega_N`.
 //!
 //! MUAD: MIL-STD-1797A, appendix A, 4.2.1.2.
 

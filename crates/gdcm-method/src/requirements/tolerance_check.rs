@@ -89,10 +89,14 @@ impl ToleranceCheck {
         tolerance: &ChannelTolerance,
     ) -> Result<Self, ToleranceCheckError> {
         check_shape(window, tolerance.output)?;
+        // Step 1
         let flown = compared_samples("flown", &window.measured, window, tolerance)?;
         let simulated = compared_samples("simulated", &window.simulated, window, tolerance)?;
+        // Step 2
         let width = corridor_width(&flown, tolerance);
+        // Step 3
         let excess: Vec<f64> = excesses(&flown, &simulated, &width).collect();
+        // Step 4
         let largest = first_maximum(&excess);
         let multiples = error_multiples(&flown, &simulated, &width);
         let peak = first_maximum(&multiples);

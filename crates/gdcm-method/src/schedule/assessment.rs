@@ -1,4 +1,6 @@
-//! What a correction improves: J before and after (M12).
+//! What a correction improves: J before and after (M12). J is the cost of the errors in magnitude
+//! and phase of a model's response against its reference; a *mismatch* holds these errors
+//! (`fidelity`).
 
 use gdcm_model::dataset::{Pair, PairTable};
 

@@ -1,5 +1,6 @@
-//! Cautions about a schedule (M11b, M12, M15.6), and when a scheduled correction is so much worse
-//! than the condition's own that a caution says so ([`ScheduledCost::is_notable`]).
+//! Cautions about a schedule, a correction as a function of airspeed fitted to the conditions' own
+//! corrections (M11b, M12, M15.6), and when a scheduled correction is so much worse than the
+//! condition's own that a caution says so ([`ScheduledCost::is_notable`]).
 
 use gdcm_model::dataset::ConditionId;
 

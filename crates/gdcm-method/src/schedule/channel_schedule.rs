@@ -10,8 +10,9 @@
 //! 6  checks between the conditions (interpolation_check)
 //! ```
 //!
-//! `V` is the airspeed, `k` a channel's gain, `z` the second variable scaled to -1 to 1, and `gamma`
-//! its coefficient.
+//! A *cluster* holds conditions at nearly equal airspeeds, which count as one airspeed. `V` is the
+//! airspeed, `k` a channel's gain, `z` the second variable scaled to -1 to 1, and `gamma` its
+//! coefficient.
 
 use gdcm_model::dataset::condition::FlightState;
 
@@ -57,6 +58,7 @@ impl Schedule {
         settings: ScheduleSettings,
     ) -> Result<Self, ScheduleError> {
         let mut schedule = Self::fit_unchecked(points, settings)?;
+        // Step 6
         schedule.cautions = schedule.find_cautions(points);
         Ok(schedule)
     }
@@ -69,13 +71,16 @@ impl Schedule {
         points: &[ScheduledPoint<'_>],
         settings: ScheduleSettings,
     ) -> Result<Self, ScheduleError> {
+        // Step 1
         let Some(airspeeds) = Airspeeds::new(
             points.iter().map(|point| point.airspeed_kt).collect(),
             settings.airspeed_tolerance_kt,
         ) else {
             return Err(ScheduleError::NoCondition);
         };
+        // Step 2
         let values = regressed_values(points, settings.quantity);
+        // Steps 3 and 4
         let second = fit_second_term(points, &airspeeds, settings, &values)?;
         let gains = values.map(|channel, values| match &second {
             Some(SecondTerm { scaled, slopes, .. }) => {
@@ -88,6 +93,7 @@ impl Schedule {
             }
             None => Regression::fit(&airspeeds, values, settings.kind),
         });
+        // Step 5
         let leads = LeadSchedule::fit(points, &airspeeds, settings.tau_degree);
         let delays = if settings.delays && leads.is_none() {
             Some(DelaySchedule::fit(points, &airspeeds, settings.kind))

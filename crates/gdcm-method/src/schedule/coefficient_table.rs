@@ -1,4 +1,6 @@
-//! A schedule's coefficients or lookup values as a table.
+//! A schedule's coefficients or lookup values as a table. The schedule gives each channel's gain
+//! `k` (and delay `τ`, where requested) as a function of the airspeed `V`: a polynomial in the
+//! scaled airspeed `v`, or a lookup table.
 
 use super::channel_schedule::Schedule;
 use super::lead_schedule::LeadSchedule;

@@ -67,7 +67,9 @@ fn gain_residuals(
     for (condition, point) in points.iter().enumerate() {
         let own = point.correction.net_gain(pair);
         let scheduled = &predictions.scheduled[condition];
+        // Step 1
         residuals.push(Residual::new(own, scheduled.net_gain(pair)));
+        // Step 2
         left_out.push(match &predictions.left_out[condition] {
             Some(prediction) => Residual::new(own, prediction.net_gain(pair)),
             None => None,

@@ -1,5 +1,7 @@
 //! Checks a schedule between its conditions (M11b): a polynomial through few airspeeds can leave
-//! the range of the gains to which it is fitted.
+//! the range of the gains to which it is fitted. A *cluster* holds conditions at nearly equal
+//! airspeeds, which count as one airspeed; a gain is inspected at 100 steps between neighbouring
+//! clusters, and its sign at 100 steps over the whole range.
 
 use super::caution::ScheduleCaution;
 use super::channel_schedule::{STEPS, Schedule};

@@ -1,5 +1,6 @@
 //! How well polynomials of each degree fit the signed delays: root mean square differences, with
-//! all conditions and with each condition left out (M15.5).
+//! all conditions and with each condition left out (M15.5). A *signed delay* may be negative: it is
+//! then a lead.
 
 use gdcm_model::dataset::{Pair, PairTable};
 

@@ -1,4 +1,4 @@
-//! Signed delays over airspeed (M15.5).
+//! Signed delays over airspeed (M15.5). A negative signed delay is a lead, which a filter realises.
 
 use std::sync::Arc;
 

@@ -1,4 +1,6 @@
-//! Schedule settings: form, degree, regressed quantity, delays (M11), and how they are written in files.
+//! Schedule settings: form, degree, regressed quantity, delays (M11), and how they are written in
+//! files. A schedule gives each channel's gain `k`, and delay where requested, as a function of
+//! airspeed.
 
 use serde::{Deserialize, Serialize};
 

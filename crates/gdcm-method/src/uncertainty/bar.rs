@@ -5,8 +5,11 @@
 //! inner bar: q_0 +- t(nu_id) s_id
 //! ```
 //!
-//! `q_0` is the value with both representatives, `s_phys` and `s_id` are the standard deviations due
-//! to the unknown trim and the identification, and `t` is Student's quantile at the confidence level.
+//! A *representative* is the model that stands for a condition's physics or identified models.
+//! `q_0` is the value with both representatives, `s_phys` and `s_id` are the standard deviations
+//! due to the unknown trim and the identification, found by *substitution*: another accepted model
+//! takes the place of a representative. `nu_id` are the degrees of freedom of `s_id`, and `t` is
+//! Student's quantile at the confidence level.
 
 use super::distributions::student_quantile;
 use super::variance_component::{VarianceComponent, satterthwaite};

@@ -1,4 +1,6 @@
-//! Measurement error from the coherence (M13.2).
+//! Measurement error of a response `H` from its coherence `gamma^2` (M13.2), and hence of the
+//! response's delta gain `G` and delta delay `D`, the medians over frequency of the gain and the
+//! delay that it needs.
 
 use std::f64::consts::PI;
 

@@ -1,9 +1,14 @@
-//! Error bars for all conditions (M13.2, M13.3).
+//! Error bars for all conditions (M13.2, M13.3). A *scalar* is a condition's result with a bar: a
+//! gain's logarithm or a delay, of a response or of a channel (`scalar`).
 //!
 //! ```text
 //! s_phys^2, s_own^2 <- mean square changes if other models are substituted (spread)
 //! s_id^2            <- s_own^2 pooled with the other conditions (variance_component), or the reported s^2 if that is larger
 //! ```
+//!
+//! `s_phys` is the standard deviation due to the physics models' trim, `s_id` that due to the
+//! identification; the reported `s` comes from the identified representative's own confidence band
+//! or coherence.
 
 use super::bar::{Bar, IdentificationSource};
 use super::scalar::{Figures, Scalar, ScalarTable};

@@ -5,6 +5,9 @@
 //! hat value h_c = |q_c|^2, q_c the row of Q;   leverage of any row x: x' (X'X)^-1 x = |R'^-1 x|^2
 //! leave-one-out error e_c / (1 - h_c)
 //! ```
+//!
+//! `X` has a row for each condition c and a column for each coefficient, `y` a value for each
+//! condition.
 
 use nalgebra::{DMatrix, DVector};
 

@@ -1,4 +1,5 @@
-//! Scalar results with error bars (M13).
+//! Scalar results with error bars (M13): `G` and `D` are the gain and delay that a response needs,
+//! `k` and `tau` those of a channel, `k_o k_i` the net gain of output `o` and input `i`.
 
 use std::collections::BTreeMap;
 use std::ops::Index;

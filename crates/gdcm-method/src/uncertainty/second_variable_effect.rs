@@ -5,6 +5,9 @@
 //! 2  effect <- 2 gamma, gamma the coefficient of z;  p <- Student's test of gamma / se, se its standard error
 //! 3  needed: p, after Holm's correction, below 1 - level, and the rms leave-one-out error falls by 10 % or more
 //! ```
+//!
+//! The second variable is altitude or mass; `level` is the confidence level. Holm's correction is
+//! over several tests.
 
 use super::design::{Design, sum_of_squares};
 use super::distributions::{student_quantile, student_two_sided};
@@ -21,7 +24,7 @@ pub struct SecondVariableDesign {
 }
 
 impl SecondVariableDesign {
-    /// Appends the variable's value in each condition to `rows` as the last column.
+    /// Step 1: appends the variable's value in each condition to `rows` as the last column.
     ///
     /// # Errors
     /// [`SecondVariableError`] if the effect cannot be estimated.
@@ -39,7 +42,7 @@ impl SecondVariableDesign {
         Ok(Self { without, with })
     }
 
-    /// Estimates the effect on `values`, which has one value for each condition.
+    /// Step 2: estimates the effect on `values`, which has one value for each condition.
     pub fn effect(&self, values: &[f64], level: f64) -> SecondVariableEffect {
         let fit = self.with.fit(values);
         let freedom = self.with.freedom() as f64;
@@ -106,8 +109,8 @@ pub struct SecondVariableEffect {
 }
 
 impl SecondVariableEffect {
-    /// Decides whether the schedule needs the variable: the effect is significant after Holm's
-    /// correction, and the rms leave-one-out error falls by 10 % or more.
+    /// Step 3: decides whether the schedule needs the variable: the effect is significant after
+    /// Holm's correction, and the rms leave-one-out error falls by 10 % or more.
     pub fn is_needed(&self, p_holm: f64, level: f64) -> bool {
         match (self.left_out_without, self.left_out_with) {
             (Some(without), Some(with)) => p_holm < 1.0 - level && with <= NOTABLE_RATIO * without,

@@ -1,5 +1,6 @@
-//! Variances with degrees of freedom: from substitutions, summed, and pooled over conditions (M13.1 to
-//! M13.3).
+//! Variances with degrees of freedom: from substitutions, summed, and pooled over conditions (M13.1
+//! to M13.3). A *substitution* replaces a condition's representative by another accepted model; the
+//! *change* is that of a result.
 
 /// Variance of a gain's natural logarithm, or of a delay \[s^2\], with its degrees of freedom.
 #[derive(Clone, Copy, Debug, PartialEq)]

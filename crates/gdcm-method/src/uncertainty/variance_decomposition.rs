@@ -7,9 +7,11 @@
 //! rest^2 <- max(0, S^2 - B)
 //! ```
 //!
-//! `e_c` and `h_c` are condition c's residual and hat value (`design`); `s_phys,c` and `s_id,c` are
-//! the parts in its error bar (`bar`). If the bundles explain the scatter fully, `S^2 / B` has
-//! Fisher's distribution.
+//! The *bundles* are the conditions' physics models, whose spread shows the effect of the unknown
+//! trim, and their identified models. `n` is the count of conditions, `r` that of fitted
+//! coefficients. `e_c` and `h_c` are condition c's residual and hat value (`design`); `s_phys,c`
+//! and `s_id,c` are the parts in its error bar (`bar`). If the bundles explain the scatter fully,
+//! `S^2 / B` has Fisher's distribution.
 
 use super::bar::Bar;
 use super::design::{Design, sum_of_squares};

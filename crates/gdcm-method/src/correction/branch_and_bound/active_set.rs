@@ -5,8 +5,10 @@
 //! min g' d + d' H d / 2   subject to   low <= d <= high
 //! ```
 //!
-//! A bound is *active* if it fixes its scale; a scale without an active bound is *free*. Source:
-//! Nocedal & Wright, "Numerical Optimization", 2nd ed. 2006, 16.5.
+//! The unknowns are *scales*: the coordinates that the constraints leave free in the gains or
+//! delays ([`super`]). `d` is a step in all scales, `g` and `H` are the objective's gradient and
+//! Hessian before it. A bound is *active* if it fixes its scale; a scale without an active bound is
+//! *free*. Source: Nocedal & Wright, "Numerical Optimization", 2nd ed. 2006, 16.5.
 
 use super::effort::Effort;
 use super::expansion::{Expansion, ScaleBox};
@@ -88,6 +90,7 @@ impl QuadraticModel {
         let hessian = &at.hessian;
         self.step.fill(0.0);
         self.slope.copy_from_slice(gradient);
+        // Step 1
         for (scale, &slope) in gradient.iter().enumerate() {
             let is_pressed = (self.low[scale] >= 0.0 && slope >= 0.0)
                 || (self.high[scale] <= 0.0 && slope <= 0.0);
@@ -104,12 +107,14 @@ impl QuadraticModel {
             if effort.is_stopped() {
                 return None;
             }
+            // Step 2
             self.solve_free(hessian, ridge)?;
             let allowed = self.longest_step();
             for &scale in &self.free {
                 self.step[scale] += allowed.fraction * self.move_to[scale];
             }
             self.update_slope(gradient, hessian);
+            // Steps 3 and 4
             if let Some(blocking) = allowed.blocking {
                 self.step[blocking.scale] = blocking.end;
                 self.is_free[blocking.scale] = false;

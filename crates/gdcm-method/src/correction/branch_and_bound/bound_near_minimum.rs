@@ -1,5 +1,10 @@
 //! Lower bound on the objective over a region that contains a minimum or lies beside it, from the
 //! gradient and the Hessian at the minimum (line 8 in [`super`]'s algorithm).
+//!
+//! The objective is a sum of *terms*, each a function of the difference between two *scales*, the
+//! unknowns. The last scale, the *ground*, is always 0. A *floating piece* is a group of scales
+//! that no term connects with the ground: shifting it as a whole changes nothing, so that its
+//! Hessian is singular unless one scale is fixed. A bound is *active* if the minimum lies on it.
 
 use super::convex_bound::quadratic_bound;
 use super::expansion::Expansion;
@@ -25,7 +30,7 @@ impl NodeExclusion<'_> {
     /// `None` if a piece has pressure, but less than its slopes without pressure add up to (3), the
     /// least Hessian is not positive definite (4), or the gradient is too large (5).
     pub(super) fn bound_at(&self, minimum: &[f64], at: &Expansion) -> Option<f64> {
-        // The difference between two scales changes by up to twice the distance.
+        // Step 1: the difference between two scales changes by up to twice the distance.
         let least = self.least_hessian(|term| {
             let u = term.difference(minimum);
             Interval {
@@ -33,12 +38,15 @@ impl NodeExclusion<'_> {
                 high: u + 2.0 * WITHIN,
             }
         });
+        // Step 2
         let pressures: Vec<f64> = (0..minimum.len())
             .map(|scale| self.pressure(minimum, at, scale))
             .collect();
+        // Step 3
         let anchors = self.anchors(at, &pressures)?;
         let lower = &self.objective.lower;
         let upper = &self.objective.upper;
+        // Step 4
         let free: Vec<usize> = (0..self.objective.ground())
             .filter(|scale| lower[*scale] < upper[*scale] && !anchors.contains(scale))
             .collect();
@@ -47,6 +55,7 @@ impl NodeExclusion<'_> {
         for (position, &scale) in free.iter().enumerate() {
             reach[scale] = inverse[(position, position)].sqrt();
         }
+        // Step 5
         quadratic_bound(at, &reach, WITHIN, |scale| pressures[scale] > 0.0)
     }
 
@@ -66,7 +75,7 @@ impl NodeExclusion<'_> {
         }
     }
 
-    /// Chooses a reference for each floating piece: a fixed scale, otherwise the scale with the
+    /// Chooses an anchor for each floating piece: a fixed scale, otherwise the scale with the
     /// largest pressure (any scale if none has pressure). Returns `None` if this pressure is
     /// positive, but less than the summed slope magnitudes of the piece's scales without pressure.
     fn anchors(&self, at: &Expansion, pressures: &[f64]) -> Option<Vec<usize>> {

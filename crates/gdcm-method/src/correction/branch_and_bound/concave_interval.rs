@@ -5,8 +5,9 @@
 //! f''(u) = 2 / z^2 (2 R1 z^4 - R1 c1 z^3 - R2 c2 z + 2 R2),   z = e^u
 //! ```
 //!
-//! `R1`, `c1` are the `forward` exponential's weight and centre, `R2`, `c2` the `backward`
-//! exponential's.
+//! `u` or `-u` is the logarithm of a gain product up to a constant. `R1`, `c1` are the `forward`
+//! exponential's weight and centre, `R2`, `c2` the `backward` exponential's. Alone, each is concave
+//! below its *inflection*, `ln(c / 2)` in its own argument `u` or `-u`.
 
 use super::exponential::Exponential;
 use crate::correction::interval::Interval;
@@ -57,12 +58,14 @@ pub(super) fn concave_interval(forward: &Exponential, backward: &Exponential) ->
         }
         (false, false) => {}
     }
+    // Step 1
     let deepest = quartic_least(forward, backward).ln();
+    // Step 2
     if is_surely_convex(forward, backward, deepest) {
         return None;
     }
-    // First guess for the brackets: `reach` exceeds the distance between the inflections `ln(c1 /
-    // 2)` and `-ln(c2 / 2)`; `convex_end` moves further away if necessary.
+    // Step 3. First guess for the brackets: `reach` exceeds the distance between the inflections
+    // `ln(c1 / 2)` and `-ln(c2 / 2)`; `convex_end` moves further away if necessary.
     let reach = 1.0 + (forward.inflection() + backward.inflection()).abs();
     let left = convex_end(forward, backward, deepest - reach, deepest);
     let right = convex_end(forward, backward, deepest + reach, deepest);

@@ -1,5 +1,8 @@
 //! Parts of the scale box, given by bounds on the difference between every two scales: `s_to -
-//! s_from <= bound(from, to)`.
+//! s_from <= bound(from, to)`. The *scales* are the unknowns in the search ([`super`]), each
+//! between a lower and an upper bound; the last one, the *ground*, is always 0, so that a
+//! difference from it is a scale itself. Differences are bounded because each term in the objective
+//! depends on one.
 
 use crate::correction::interval::Interval;
 

@@ -5,6 +5,9 @@
 //! tangent  through (low, g(low)), touching g at a point beyond the inflection
 //! chord    from (low, g(low)) to (high, g(high)), if no such point lies within the interval
 //! ```
+//!
+//! `R` and `c` are the exponential's weight and centre ([`Exponential`]); its inflection is at
+//! `v = ln(c / 2)`.
 
 use super::derivatives::Derivatives;
 use super::exponential::Exponential;

@@ -1,5 +1,6 @@
 //! Second-order expansion in the scales: value, gradient and Hessian, as Newton's method and the
-//! lower bounds need them.
+//! lower bounds need them. The *scales* are the unknowns in the search ([`super`]); each *term* in
+//! the function depends on the difference between two of them.
 
 use super::rounded::Rounded;
 use super::term::Term;

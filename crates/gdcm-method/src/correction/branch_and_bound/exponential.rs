@@ -5,8 +5,10 @@
 //! sum w (G - A e^v)^2 = R (e^v - c)^2 + least,     R = sum w A^2,   c = sum w G A / R
 //! ```
 //!
-//! The sum is over the entries, with delta gain `G`, weight `w` and gain product `A e^v`. `v` is
-//! the input's scale less the output's.
+//! An *entry* is a response of an output to an input, or an output's deviation from neutral: its
+//! delta gain `G` is the gain that it needs (neutral: 1), its gain product `A e^v` the gain that
+//! the channels give it, `w` its weight. `v` is the scale of the input's component less that of the
+//! output's (scales: [`super`]); `A` is the product at `v = 0`.
 
 use super::derivatives::{Derivatives, Range};
 use super::rounded::Rounded;

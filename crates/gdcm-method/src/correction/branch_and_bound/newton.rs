@@ -1,7 +1,9 @@
 //! Newton's method for a local minimum over the box `lower <= s <= upper`.
 //!
 //! With the gradient `g` and the Hessian `H` at the current point, the function's quadratic model
-//! is `g' d + d' H d / 2`, where `d` is the step; `active_set` minimises it over the box.
+//! is `g' d + d' H d / 2`, where `d` is the step; `active_set` minimises it over the box. The
+//! unknowns `s` are the *scales* ([`super`]). The function is the objective or, for a lower bound,
+//! its convex underestimator.
 
 use super::active_set::QuadraticModel;
 use super::effort::Effort;
@@ -82,6 +84,7 @@ impl<'a> Newton<'a> {
             {
                 steps_near += 1;
             }
+            // Steps 2 and 3
             let moved = self.search_line(function, bounds, scales, step.decrease);
             if !moved || steps_near == STEPS_NEAR_MINIMUM {
                 return;

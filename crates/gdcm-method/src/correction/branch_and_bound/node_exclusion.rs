@@ -1,4 +1,6 @@
-//! Tests that exclude a node (a part of the box, here the *region*) from the search.
+//! Tests that exclude a node (a part of the box, here the *region*) from the search. `F` is the
+//! objective: a sum of terms, each a function of the difference between two *scales* `s_i`, the
+//! unknowns; the last scale, the *ground*, is always 0.
 //!
 //! ```text
 //! monotonicity  some slope dF/ds_i has a constant sign over the region, and s_i can move downhill without meeting

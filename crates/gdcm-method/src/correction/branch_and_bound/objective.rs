@@ -1,5 +1,7 @@
 //! The objective as a function of the scales, after the constraints are eliminated:
-//! `F(s) = constant + sum of terms f(s_to - s_from)` (formulas in [`super`]).
+//! `F(s) = constant + sum of terms f(s_to - s_from)` (formulas in [`super`]). A *scale* `s_i` is
+//! the coordinate that the constraints leave free in a component of connected channels: it
+//! determines the gain or delay of each of them.
 
 use super::expansion::{Curvature, Differentiable, Expansion, ScaleBox};
 use super::rounded::Rounded;

@@ -1,4 +1,6 @@
-//! The search's open nodes, stored in limited memory.
+//! The search's open nodes, stored in limited memory. A *node* is a part of the box that contains
+//! the unknown *scales* ([`super`]); it is *open* until it is closed by its lower bound or
+//! branched.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;

@@ -5,8 +5,10 @@
 //! sum w (u_e - u)^2 = W (u - c)^2 + sum w (u_e - c)^2,     W = sum w,   c = sum w u_e / W
 //! ```
 //!
-//! The sum is over the entries, with weight `w` and *target difference* `u_e`, the scale difference
-//! at which the entry meets its delta.
+//! An *entry* is a response of an output to an input, or a channel's deviation from neutral, with
+//! weight `w`. Its *delta* is the gain or delay that it needs, its *target difference* `u_e` the
+//! difference between two scales (the unknowns, see [`super`]) at which it meets its delta. The sum
+//! is over the entries.
 
 use super::rounded::Rounded;
 use super::term::{Function, Term, TermSum};

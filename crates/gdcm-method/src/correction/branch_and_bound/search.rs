@@ -1,5 +1,13 @@
 //! Branch-and-bound search for the global minimum and for the other minima within 1 % above it: the
 //! loop of the algorithm in [`super`], which defines scales, terms and nodes.
+//!
+//! ```text
+//! proof     until the lowest open bound reaches `aim`, just below the best minimum, now proven
+//! listing   then until it reaches `cutoff`, 1 % above: the local minima up to there are listed
+//! close     a node without a minimum to be found: only its bound remains, in `closed`
+//! keep      a node whose bound reaches `aim` during the proof: it waits for the listing
+//! branch    any other node: split it into parts, which are open nodes in turn
+//! ```
 
 use super::convex_bound::tangent_bound;
 use super::difference_bounds::DifferenceBounds;

@@ -1,5 +1,5 @@
 //! Terms in the objective: functions of a scale difference `u`, with bounds on their rounding
-//! errors.
+//! errors. The *scales* are the unknowns in the search ([`super`]): logarithms of gains, or delays.
 //!
 //! ```text
 //! f(u) = W (u - c)^2                              gains compared in dB, and delays

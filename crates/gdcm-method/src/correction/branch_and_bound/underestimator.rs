@@ -1,10 +1,14 @@
-//! Convex underestimator for the objective over a node, a part of the scale box.
+//! Convex underestimator for the objective over a node, a part of the box that contains the unknown
+//! *scales* `s` ([`super`]).
 //!
 //! ```text
 //! F(s) = constant + sum over terms f(s_to - s_from)  >=  constant + sum over terms e(s_to - s_from)
 //! e: f itself where f is convex over the node's range of the difference, otherwise the sum of the envelopes
 //!    of its two exponentials: forward in u = s_to - s_from, backward in -u
 //! ```
+//!
+//! The *envelope* is the greatest convex function that does not exceed an exponential over the
+//! range (`envelope`).
 
 use super::derivatives::Derivatives;
 use super::difference_bounds::DifferenceBounds;

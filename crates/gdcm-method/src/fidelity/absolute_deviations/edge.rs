@@ -1,9 +1,19 @@
-//! Edges that leave a vertex: those along which the sum of deviations does not grow, and their
-//! ends.
+//! One step from vertex to vertex in the simplex method for least absolute deviations (Barrodale
+//! and Roberts, SIAM J. Numer. Anal. 10(5), 1973): the edges that leave a vertex, and their ends.
+//!
+//! The problem is `min sum_i |x_i w - y_i|` over `w >= 0`. A *constraint* is a row, `x_i w = y_i`,
+//! or a weight, `w_k = 0`; indices count the rows first. Its *left-hand side* is `x_i w` or `w_k`.
+//! A *vertex* is the point at which the constraints in its *basis*, one for each unknown, hold. An
+//! *edge* releases one constraint in the basis and keeps the others. Along an edge the sum is
+//! convex and piecewise linear: its slope changes only where a row's deviation `x_i w - y_i`
+//! changes sign.
 //!
 //! ```text
-//! 1  slope of the sum along each edge                                                    (EdgeRates)
-//! 2  end of an edge: the constraint at which the slope, which only rises, reaches zero    (Crossing)
+//! 1  every edge and the sum's slope along it                          (Vertex::edges, EdgeRates)
+//! 2  keep the edges along which the sum does not rise, steepest first relative to their scale
+//! 3  end of an edge: the first crossing of a constraint at which the sum stops falling  (Crossing)
+//! 4  exchange: the crossed constraint replaces the released one       (Vertex::end_of_edge)
+//! 5  the first descending edge with an end: go there; otherwise return the ends of all flat edges
 //! ```
 
 use std::cmp::Ordering;
@@ -25,14 +35,17 @@ pub(super) enum Neighbours {
 
 impl Vertex {
     /// Returns the end vertices of the edges along which the deviations do not grow. Among
-    /// descending edges the steepest is taken: with many rows, the first descending edge would need
-    /// ten times as many steps.
+    /// descending edges the steepest relative to its scale is taken: with many rows, the first
+    /// descending edge would need ten times as many steps.
     pub(super) fn neighbours(&self, fit: &Fit<'_>) -> Neighbours {
         let deviations = self.deviations(fit);
+        // Step 1
         let mut edges = self.edges(fit, &deviations);
+        // Step 2
         edges.retain(|edge| edge.relative_slope() <= FLAT);
         edges.sort_by(|a, b| a.relative_slope().total_cmp(&b.relative_slope()));
         let mut equal = Vec::new();
+        // Steps 3 to 5
         for edge in &edges {
             if let Some(end) = self.end_of_edge(fit, edge, &deviations) {
                 if edge.relative_slope() < -FLAT {
@@ -44,9 +57,9 @@ impl Vertex {
         Neighbours::Equal(equal)
     }
 
-    /// Returns this vertex's edges. Each releases a constraint in the basis: a row in either
-    /// direction, a weight only upwards. Along column `leaving` in the inverse basis matrix, that
-    /// constraint's left-hand side changes at rate 1, and no other in the basis changes.
+    /// Returns this vertex's edges (step 1). Each releases a constraint in the basis: a row in
+    /// either direction, a weight only upwards. Along column `leaving` in the inverse basis matrix,
+    /// that constraint's left-hand side changes at rate 1, and no other in the basis changes.
     fn edges(&self, fit: &Fit<'_>, deviations: &[f64]) -> Vec<Edge> {
         let Some(inverse) = fit.matrix(&self.basis).try_inverse() else {
             return Vec::new();
@@ -86,17 +99,19 @@ impl Vertex {
         deviations
     }
 
-    /// Returns the vertex along an edge at which the summed deviations stop falling; `None` if
-    /// no constraint stops the fall, or if no vertex is defined there.
+    /// Returns the vertex along an edge at which the summed deviations stop falling (steps 3 and
+    /// 4); `None` if no constraint stops the fall, or if no vertex is defined there.
     ///
     /// Each row whose deviation changes sign along the edge raises the sum's slope by twice the
-    /// row's rate of change; the sum stops falling where the slope is no longer negative.
+    /// row's rate of change; the sum stops falling where the slope is no longer negative. Along a
+    /// flat edge, that is already so at the start: it ends at its first crossing.
     fn end_of_edge(&self, fit: &Fit<'_>, edge: &Edge, deviations: &[f64]) -> Option<Self> {
         let mut crossings = Vec::new();
         for (constraint, deviation) in deviations.iter().enumerate() {
             if self.basis.contains(&constraint) {
                 continue;
             }
+            // Here `slope` is the rate at which this constraint's left-hand side changes.
             let slope = fit.left(constraint, &edge.direction);
             let step = -deviation / slope;
             // A weight that reaches zero ends the edge, whatever the rate.
@@ -105,6 +120,8 @@ impl Vertex {
             } else {
                 slope.abs()
             };
+            // Constraints that hold already have no step and are skipped: `EdgeRates` includes the
+            // rows among them, and if a weight becomes negative, `from_basis` returns `None`.
             if slope.abs() > ZERO && step > ZERO {
                 crossings.push(Crossing {
                     constraint,
@@ -113,7 +130,9 @@ impl Vertex {
                 });
             }
         }
+        // The slope must rise until it counts as flat.
         let entering = crossing_at(crossings, -FLAT * edge.scale - edge.slope)?;
+        // Step 4
         let mut basis = self.basis.clone();
         basis[edge.leaving] = entering;
         Self::from_basis(fit, basis)
@@ -127,7 +146,7 @@ struct Edge {
     direction: Vec<f64>,
     /// Rate at which the summed deviations change along the edge.
     slope: f64,
-    /// Maximum possible magnitude of `slope`.
+    /// Maximum possible magnitude of `slope`: the sum over the rows of their rates' magnitudes.
     scale: f64,
 }
 
@@ -141,9 +160,10 @@ impl Edge {
     }
 }
 
-/// Rates at which the summed deviations change along a direction and against it: a row whose
-/// deviation is zero adds `|change|` in both; another row adds its change times the sign of its
-/// deviation, and the opposite against the direction.
+/// Rates at which the summed deviations change along a direction and against it. `change` is the
+/// rate at which a row's left-hand side changes along the direction: a row whose deviation is zero
+/// adds `|change|` in both; another row adds its change times the sign of its deviation, and the
+/// opposite against the direction.
 struct EdgeRates {
     along: f64,
     against: f64,
@@ -179,7 +199,8 @@ struct Crossing {
     constraint: usize,
     /// Distance along the edge.
     step: f64,
-    /// Half the change in the edge's slope at this crossing.
+    /// Half the rise in the sum's slope at this crossing: the magnitude of the row's rate, or
+    /// infinity for a weight.
     change: f64,
 }
 
@@ -192,9 +213,9 @@ impl Crossing {
     }
 }
 
-/// Returns the constraint at the first crossing along an edge at which the slope has risen by at
-/// least `rise` (the slope rises by twice `change` at each crossing): a weighted median, found by
-/// bisection rather than by sorting.
+/// Returns the constraint at the first crossing along an edge at which the sum's slope has risen by
+/// at least `rise` (the slope rises by twice `change` at each crossing): a weighted median, found
+/// by bisection rather than by sorting.
 fn crossing_at(mut crossings: Vec<Crossing>, rise: f64) -> Option<usize> {
     // `candidates` contains the crossing; the slope has risen by `risen` before them.
     let mut candidates = crossings.as_mut_slice();

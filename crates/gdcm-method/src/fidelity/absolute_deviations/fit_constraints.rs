@@ -1,4 +1,6 @@
-//! Constraints in a fit, their deviations, and the sums over the deviations.
+//! Constraints in a fit, their deviations, and the sums over the deviations. A *constraint* is a
+//! row `x_i w = y_i` or a weight `w_k = 0`; its *deviation* is the left-hand side minus the
+//! right-hand side. The fit minimises the sum of the rows' absolute deviations.
 
 use nalgebra::{DMatrix, DVector};
 

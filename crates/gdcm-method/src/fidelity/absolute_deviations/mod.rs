@@ -65,8 +65,11 @@ pub fn least_absolute_deviations(
     // Fit `y / scale`, and multiply the weights by `scale` at the end.
     let scaled: Vec<f64> = y.iter().map(|y| y / scale).collect();
     let fit = Fit::new(x, &scaled);
+    // Step 1
     let start = Vertex::nearest(&fit, &fit.least_squares()).unwrap_or_else(|| Vertex::origin(&fit));
+    // Steps 2 and 3
     let mut best = best_vertex(&fit, start, cancelled)?;
+    // Step 4
     if best.is_degenerate(&fit) {
         let weights = solve_linear_program(x, &scaled, unknowns)?;
         if let Some(vertex) = Vertex::nearest(&fit, &weights) {

@@ -1,4 +1,5 @@
-//! Vertices in a fit: points in which as many independent constraints meet as there are unknowns.
+//! Vertices in a fit `min sum_i |x_i w - y_i|` over `w >= 0`: points in which as many independent
+//! constraints, rows `x_i w = y_i` or weights `w_k = 0`, meet as there are unknowns.
 
 use nalgebra::DVector;
 

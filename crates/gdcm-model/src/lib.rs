@@ -15,7 +15,9 @@
 //! | [`executor`], [`progress`] | parallel tasks, progress and cancellation |
 //! | [`message_text`], [`whole_number`] | sanitised text, and whole numbers in JSON |
 //!
-//! The crate depends on no files, windows or threads.
+//! The crate depends on no files, windows or threads. Section numbers (M2, M14.6, M18.1, ...) are
+//! those of the pages listed in `docs/README.md`: M1 to M12 in `docs/method.md`, M14 in
+//! `docs/identification.md`, M15 in `docs/lead.md`, M18 in `docs/physics.md`.
 //!
 //! ```
 //! use gdcm_model::dataset::{Pair, StateSpace};

@@ -1,5 +1,8 @@
 //! Assembles a dataset draft from the models with a condition and a role. The draft's models are
 //! built in `assembled_models.rs`, its flight records in `assembled_records.rs`.
+//!
+//! A [`Part`] is a model found in a file, with its row (condition, role, trim) and its matched
+//! channels; [`Rules`] are the engineer's entries.
 
 use std::collections::BTreeSet;
 

@@ -1,5 +1,19 @@
 //! Models in the dataset draft, converted to the dataset's channels and units, with notes on the
 //! conversions.
+//!
+//! A [`Part`] is a model found in a file (`found`), with its place in the dataset (`row`:
+//! condition, role, name, trim offsets, from the file, its name and the engineer's [`Rules`]) and
+//! with its `inputs` and `outputs` matched to the dataset's. The role decides what is built from
+//! it:
+//!
+//! ```text
+//! nominal, perturbed  physics model, linearised at the condition's trim or at another trim
+//! identified          identified model; measured responses with the same name are joined
+//!
+//! perturbation        offsets of the trim from the condition's, by coordinate
+//! moved               named physics parameters changed (M18.1, docs/physics.md): a run changes a
+//!                     single one, to learn its effect; a rerun changes several, to check them
+//! ```
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -13,8 +27,9 @@ use crate::dataset::physics_parameter::MovedParameters;
 use crate::names::RowRole;
 use crate::number_format::number;
 
-/// Builds a physics model, or a run with a moved parameter. Coordinates that are perturbed only in
-/// the condition's other physics models get a zero offset.
+/// Builds a physics model, also one with moved parameters. `coordinates` are those in which the
+/// trim of any of the condition's physics models is perturbed; where this model states no offset, it
+/// is 0.
 pub(super) fn physics_model(part: &Part, coordinates: &BTreeSet<&String>) -> ModelDraft {
     let mut offsets = BTreeMap::new();
     for coordinate in coordinates {
@@ -31,6 +46,8 @@ pub(super) fn physics_model(part: &Part, coordinates: &BTreeSet<&String>) -> Mod
         Some(change) => Some(MovedParameters::Run(change.clone())),
         None => model.moved.clone(),
     };
+    // A model with moved parameters belongs to no bundle: even at the condition's trim, and
+    // declared nominal, it does not become the nominal model.
     let origin = match part.row.role {
         Some(RowRole::Nominal) if moved.is_none() => Origin::Nominal { perturbation },
         _ => Origin::Perturbed { perturbation },
@@ -51,6 +68,7 @@ pub(super) fn identified_models(parts: &[&Part], rules: &Rules) -> Vec<ModelDraf
             moved: None,
             ..converted_model(part)
         };
+        // A measured response joins the earlier one with the same name; matrices never join.
         let same = models
             .iter_mut()
             .find(|other| other.name == model.name && other.response.is_some());
@@ -87,6 +105,7 @@ fn converted_model(part: &Part) -> ModelDraft {
     };
     let mut model = convert_model(&part.found.draft, uses);
     model.name.clone_from(&part.row.name);
+    // A declared sample time of 0 means continuous time: it is noted, but the model has none.
     if let Some(sample_time_s) = part.sample_time_s
         && sample_time_s > 0.0
     {
@@ -97,6 +116,7 @@ fn converted_model(part: &Part) -> ModelDraft {
         let source = model.source.get_or_insert_with(Provenance::default);
         source.note = Some(notes.join("; "));
     }
+    // Inputs or outputs without names, which were matched in the file's order.
     let by_position = part.sides_by_position();
     if !by_position.is_empty() {
         let source = model.source.get_or_insert_with(Provenance::default);
@@ -105,8 +125,8 @@ fn converted_model(part: &Part) -> ModelDraft {
     model
 }
 
-/// Returns the existing note from the model's provenance, then the notes on its channels, sample
-/// time and unit conversions.
+/// Returns the existing note from the model's provenance, then the notes on its channels, the
+/// sample time declared in the rules, and the conversions of units and signs.
 fn conversion_notes(part: &Part) -> Vec<String> {
     let mut notes = Vec::new();
     if let Some(source) = &part.found.draft.source {

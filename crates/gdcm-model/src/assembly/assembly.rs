@@ -1,6 +1,9 @@
 //! Models found in files, with the engineer's rules applied to them: the entry point of this folder.
 //!
 //! The problems are described in `problem_lines.rs`, the cautions in `position_caution.rs`.
+//!
+//! A [`Part`] is a model found in a file, with its row (its place in the dataset: condition, role,
+//! trim) and its channels matched to the dataset's; [`Rules`] are the engineer's entries.
 
 use std::path::Path;
 

@@ -1,4 +1,7 @@
 //! Converts a model to the dataset's channels, order and units.
+//!
+//! A [`ChannelUse`] is a file channel matched to a dataset channel, with the factor from the file's
+//! unit and sign to the dataset's (`channel_match.rs`).
 
 use nalgebra::DMatrix;
 

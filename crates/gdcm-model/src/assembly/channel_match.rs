@@ -1,4 +1,8 @@
 //! Matches file channels to dataset channels, and determines the factors between them.
+//!
+//! A *file channel* has the name and the unit given in a model file ([`ChannelLabel`]); a *dataset
+//! channel* has a name, aliases and a unit, from the engineer's rules ([`ChannelRule`]). *Declared*
+//! units, factors and signs are entered by the engineer too; they override the file.
 
 use super::channel_note::ChannelNote;
 use super::declarations::ModelDeclarations;
@@ -55,7 +59,8 @@ impl ChannelMatcher<'_> {
     ///
     /// 1. If the file names no channel, match by position; exit with a problem if the counts
     ///    differ.
-    /// 2. Otherwise, find the file channel for each dataset channel by name.
+    /// 2. Otherwise, find the file channel for each dataset channel by name: the same name first,
+    ///    then an alias, then either of them apart from sign marks, then any known alias.
     /// 3. Determine its unit factor from declarations and units.
     /// 4. Determine its sign from declarations and names.
     /// 5. Note the named file channels that no dataset channel uses.

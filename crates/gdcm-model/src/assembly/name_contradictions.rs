@@ -1,4 +1,7 @@
 //! Contradictions between the values in a file and those in its name.
+//!
+//! A *trim offset* is the difference between the trim at which a model is linearised and its
+//! condition's, by coordinate: "roll_deg", 5.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,7 @@
 //! Missing and contradictory facts that keep files from forming a dataset.
+//!
+//! A *part* is a model found in a file, with its place in the dataset. A *measured model* consists
+//! of one or more parts with the same name.
 
 use std::fmt;
 

@@ -1,5 +1,9 @@
 //! Proposes each model's place in the dataset (condition, role, name and trim), from the file, its
 //! name and the rules.
+//!
+//! A *bundle* contains a condition's physics models, or its identified models. A *run* is a physics
+//! model with a single named parameter moved (M18.1, docs/physics.md): it belongs to a condition,
+//! but to no bundle.
 
 use std::collections::BTreeSet;
 
@@ -47,6 +51,7 @@ pub(super) fn proposed_rows(models: &[FoundModel], rules: &Rules) -> Vec<Row> {
 /// 2. Role: as the file states it, or else the name, or else as the model implies; a run with the
 ///    nominal role becomes perturbed.
 fn proposed_row(model: &FoundModel, models: &[FoundModel], rules: &Rules) -> Row {
+    // Step 1, with the role that the file or its name states.
     let facts = &model.facts;
     let offsets = trim_offsets(&model.draft.origin);
     let path = path_without_extension(model.file());
@@ -91,6 +96,7 @@ fn proposed_row(model: &FoundModel, models: &[FoundModel], rules: &Rules) -> Row
     {
         row.method.clone_from(method);
     }
+    // Step 2.
     if row.role.is_none() {
         row.role = implied_role(model, &row);
     }
@@ -128,8 +134,9 @@ fn implied_role(model: &FoundModel, row: &Row) -> Option<RowRole> {
     None
 }
 
-/// Returns a model's default name: "measured" for a part of a measured model; otherwise the name in
-/// the file, the variable if the file has several models, or the file name.
+/// Returns a model's default name: "measured" for a measured response that lacks some of the
+/// dataset's responses, so that those of a condition join to one model; otherwise the name in the
+/// file, the variable if the file has several models, or the file name.
 fn default_name(model: &FoundModel, models: &[FoundModel], rules: &Rules, path: &str) -> String {
     let is_part =
         model.inputs.len() * model.outputs.len() < rules.inputs.len() * rules.outputs.len();

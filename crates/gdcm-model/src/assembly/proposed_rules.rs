@@ -1,4 +1,6 @@
 //! Rules proposed from the models found, as long as the engineer has given none.
+//!
+//! *On-axis* responses are those that matter, such as the pitch rate Q to the stick LON (M1).
 
 use std::cmp::Reverse;
 use std::collections::BTreeSet;

@@ -1,6 +1,9 @@
 //! Finds the scope for each question about a channel: all models, the models with a role, or a
 //! single file. The scope is part of the command-line option that answers the question ("--sign
 //! NZ=-1:identified").
+//!
+//! A *question* is a fact about a channel that is missing in a file and that an option supplies:
+//! its sign, its unit or the factor between two units.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,4 +1,7 @@
 //! Values that the engineer sets for a single model.
+//!
+//! A *run* is a physics model with a single named parameter moved (M18.1, docs/physics.md); it
+//! belongs to no *bundle*, as a condition's physics models and its identified models are called.
 
 use std::collections::BTreeMap;
 

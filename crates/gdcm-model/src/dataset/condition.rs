@@ -1,5 +1,5 @@
-//! A flight condition with its two bundles of models and its flight records, checked at
-//! construction.
+//! A flight condition with its two bundles of models (physics models, identified models) and its
+//! flight records, checked at construction.
 
 use std::collections::BTreeSet;
 

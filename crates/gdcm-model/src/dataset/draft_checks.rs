@@ -41,6 +41,7 @@ impl DatasetDraft {
 
     /// Runs checks 1 to 3. The fault list is never empty.
     fn check_all(self) -> Result<(Dataset, Vec<Warning>), Vec<DraftError>> {
+        // Check 1.
         let mut checker = Checker::new(self.outputs.len(), self.inputs.len());
         let lists = [
             ("inputs", self.inputs.len(), MOST_CHANNELS),
@@ -59,6 +60,7 @@ impl DatasetDraft {
         checker.keep_fault(parameters);
         let on_axis = on_axis_table(&self.outputs, &self.inputs, &self.on_axis);
         let on_axis = checker.keep_fault(on_axis);
+        // Check 2.
         let mut conditions = Vec::with_capacity(self.conditions.len());
         let drafts = self.conditions.into_iter().take(MOST_CONDITIONS);
         for (index, draft) in drafts.enumerate() {
@@ -81,6 +83,7 @@ impl DatasetDraft {
             band,
             parameters: self.parameters,
         };
+        // Check 3.
         match Dataset::new(header, conditions) {
             Ok(dataset) => Ok((dataset, checker.models.warnings)),
             // `Location::default()`: the error itself names the list or the condition.

@@ -10,7 +10,8 @@ use crate::number_format::number;
 /// model.
 ///
 /// `omega` \[rad/s\] is positive and strictly rising, `N >= 2`; every response has `N` finite
-/// values.
+/// values. A response that was not measured has zeros, or a valid band that ends at 0
+/// ([`Self::is_measured`]).
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeasuredResponse {
     omega: Vec<f64>,

@@ -51,12 +51,16 @@ impl ModelBuilder {
         kind: BundleKind,
         draft: ModelDraft,
     ) -> Result<Model, DraftError> {
+        // Checks 1 and 2.
         let dynamics = self.dynamics(&place, kind, draft.matrices, draft.timing, draft.response)?;
+        // Check 3 for the order.
         self.check_order(&place, &dynamics, &draft.origin);
+        // Check 2 for the uncertainty bands.
         let bands = match &draft.bands {
             Some(bands) => Some(Arc::new(self.bands(&place, bands)?)),
             None => None,
         };
+        // Check 3 for the state names.
         let states = self.state_names(place, &dynamics, draft.states);
         Ok(Model {
             name: draft.name,

@@ -25,7 +25,8 @@ pub enum KnownChannels<'r> {
     AliasTable,
 }
 
-/// Canonical names of the [`KnownChannels`], computed once for all words in a text.
+/// Canonical names of the [`KnownChannels`], one for all aliases of a channel (`channel_alias.rs`);
+/// computed once for all words in a text.
 enum KnownNames {
     Dataset {
         inputs: BTreeSet<String>,

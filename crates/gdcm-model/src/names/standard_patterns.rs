@@ -1,4 +1,7 @@
 //! Patterns for common folder, file and variable names, used unless the rules give others.
+//!
+//! Earlier patterns take precedence. A group `(?<airspeed_kt>...)` sets the field after which it is
+//! named ([`NamePattern`]).
 
 use std::sync::LazyLock;
 

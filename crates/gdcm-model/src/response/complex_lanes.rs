@@ -1,4 +1,6 @@
 //! Complex arithmetic on vector registers.
+//!
+//! Each lane of a register, one of its elements, belongs to another frequency (`elimination.rs`).
 
 use nalgebra::Complex;
 use pulp::Simd;

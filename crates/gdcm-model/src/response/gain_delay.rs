@@ -5,8 +5,9 @@ use nalgebra::Complex;
 use super::lead_filter::LeadFilter;
 use crate::units::{db_to_ratio, ratio_to_db};
 
-/// A response's correction factor `k e^(-j omega tau) L_o L_i` (eq. (12), M10), with optional lead
-/// filters for its output and its input (M15). The delay is exact, not a Padé approximation.
+/// A response's correction factor `k e^(-j omega tau) L_o L_i` (eq. (12), M10): `k` is the product
+/// of the gains of its output and its input channel, `tau` the sum of their delays, and `L_o` and
+/// `L_i` are their optional lead filters (M15). The delay is exact, not a Padé approximation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GainDelay {
     /// `20 log10 k`.

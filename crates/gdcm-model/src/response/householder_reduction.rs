@@ -10,7 +10,8 @@ use pulp::{Simd, WithSimd};
 const LANES: usize = 8;
 
 /// Transforms `[A B; C D]` to `[Q' A Q, Q' B; C Q, D]` with Q orthogonal, `Q' A Q` upper
-/// Hessenberg, and the first column of `Q' B` zero below its first entry.
+/// Hessenberg, and the first column of `Q' B` zero below its first entry. The model has n states, m
+/// inputs and p outputs; ' denotes the transpose.
 ///
 /// One reflection `I - beta v v'` clears that column, and one more clears each column of A (Golub &
 /// Van Loan, "Matrix Computations", 4th ed. 2013, 7.4.2). Each is applied from both sides in a

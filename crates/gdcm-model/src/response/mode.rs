@@ -1,8 +1,10 @@
 //! A model's modes: poles, natural frequency, damping, and state participation.
 //!
 //! ```text
-//! 1  balance A; A = Q T Q^H, T triangular with the eigenvalues on its diagonal (schur_form.rs)
-//! 2  for each eigenvalue lambda: the pole is lambda; in discrete time ln(1 + lambda) / sample time (s_plane.rs)
+//! 1  balance A, or A - I in discrete time; A = Q T Q^H, T triangular with the eigenvalues on its
+//!    diagonal (schur_form.rs)
+//! 2  for each eigenvalue lambda: the pole is lambda; in discrete time ln(1 + lambda) / sample time
+//!    (s_plane.rs)
 //! 3  participation of the states, and residues of the outputs, from its eigenvectors (eigenvectors.rs)
 //! 4  the conjugate of a pole above the real axis: conjugate residues, the same participation
 //! ```

@@ -1,5 +1,7 @@
 //! A single response as a minimal-order model: balanced, without the states that the input does not
 //! control or the output does not observe.
+//!
+//! In discrete time, A - I takes the place of A (`s_plane.rs`).
 
 use nalgebra::{DMatrix, DVector};
 

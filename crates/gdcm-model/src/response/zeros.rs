@@ -7,12 +7,13 @@
 //!    and can set it to any value: this state becomes the input,
 //!       A <- A_22, b <- A_21, c <- c_2, d <- c_1       (a zero at infinity each time)
 //! 4  zeros: where [A - sI  b; c  d] loses rank, i.e. the eigenvalues of A - b c / d
-//! 5  Newton: z <- z - H(z) / H'(z) on the model of step 2, while |H| decreases
+//! 5  Newton: s <- s - H(s) / H'(s) on the model of step 2, while |H| decreases
 //! ```
 //!
 //! Emami-Naeini & Van Dooren, "Computation of zeros of linear multivariable systems", Automatica
 //! 18(4), 1982, for the single-input, single-output case. Steps 1 and 2 are in
-//! `single_response.rs`.
+//! `single_response.rs`; `e_1` is the first unit vector. In discrete time, A - I takes the place of
+//! A in all steps, so that `s` is `z - 1`; the zeros found are converted at the end (`s_plane.rs`).
 
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -70,7 +71,7 @@ pub fn finite_zeros(dynamics: &Dynamics, pair: Pair) -> Vec<Complex<f64>> {
     }
 }
 
-/// Computes the zeros of `H(z) = C (zI - A)^-1 B + D` for a single output and input. Uncontrollable
+/// Computes the zeros of `H(s) = C (sI - A)^-1 B + D` for a single output and input. Uncontrollable
 /// and unobservable poles, which cancel, do not appear as zeros. Discrete-time zeros are given as
 /// `s = ln z / T` (M2a).
 ///

@@ -1,5 +1,9 @@
 //! Curves of one response in every condition, coloured by airspeed, and the error that the schedule
 //! leaves in each.
+//!
+//! A condition's *optimum* is its own correction; the *schedule* gives gains and delays over
+//! airspeed, fitted to the optima. An error is that of a corrected physics model against the
+//! condition's identified model.
 
 use std::sync::Arc;
 

@@ -1,4 +1,9 @@
 //! One response in every condition, coloured by airspeed, and the error that the schedule leaves.
+//!
+//! The *schedule* gives each channel's gain and delay as functions of the airspeed. A condition's
+//! *optimum* is its own correction, to which the schedule is fitted. Errors are those of the
+//! corrected physics model against the identified model: a curve for each condition under the
+//! schedule, and for comparison the range that the conditions' own optima leave.
 
 use std::sync::Arc;
 
@@ -23,7 +28,8 @@ use super::marks::{Envelope, Rule};
 use super::responses::fitted_values;
 use super::uncertainty_band::BodeBand;
 
-/// Shaded range between the smallest and the largest error at the optima.
+/// Shaded range between the smallest and the largest error at the conditions' own optima; green, as
+/// the caption says.
 const OPTIMA: Color = Color::new(Hue::Corrected).tint(22);
 /// Line at zero error.
 const NO_ERROR: Stroke = Stroke::dashed(Color::DIM, 0.6, Dash::Short);
@@ -41,7 +47,8 @@ const ASPECT: f64 = 1.2;
 ///
 /// 1. Compute each response's curves; only the frequency unit and the ranges in `options` apply.
 ///    Without a curve, return `None`.
-/// 2. For a single response with a known error of the schedule: show the error beside it.
+/// 2. For a single response: show the schedule's error beside it, if any of the conditions has an
+///    identified model and a scheduled physics model (whether or not `roles` contains them).
 /// 3. Otherwise: show the responses side by side.
 pub fn airspeeds_figure(
     analysis: &Analysis,
@@ -54,6 +61,7 @@ pub fn airspeeds_figure(
     let settings = &analysis.study.settings;
     let grid = (display_band(settings.band), CURVE_POINTS);
     let job = AcrossJob::for_conditions(dataset, Some(analysis), grid);
+    // The job fails only if it is cancelled, which `Unobserved` never does.
     let across = Arc::new(job.run(&mut (), &Unobserved).ok()?);
     let options = BodeOptions {
         unit: options.unit,
@@ -116,6 +124,7 @@ pub fn airspeeds_figure(
     }
     // Step 3.
     let title = format!("Every condition: {}", names.join(", "));
+    // `side_by_side` passes each of `pairs`, so that the default plot is never used.
     let figure = side_by_side(dataset, pairs, title, |pair| {
         match pairs.iter().position(|known| *known == pair) {
             Some(index) => plots[index].response_plot(""),

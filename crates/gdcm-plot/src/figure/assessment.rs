@@ -1,4 +1,8 @@
 //! Change in J due to the correction in each condition (M12, Figures 8 to 19).
+//!
+//! J is a response's cost: the weighted squares of its differences from the identified reference in
+//! magnitude and phase, averaged over frequency (M4). ΔJ is J after the correction less J before
+//! it.
 
 use gdcm_method::fidelity::CostAverage;
 use gdcm_method::schedule::CostChange;

@@ -1,5 +1,9 @@
 //! Responses in a condition: magnitude above phase over frequency (Figures 2 and 5), with the
 //! measured coherence below; and an overview with the magnitudes of all responses.
+//!
+//! A *held* response is one that the correction must match exactly (M1). A *lead* is a filter that
+//! advances the phase in a channel; the corrected model must not be used above the band then
+//! (M15.6).
 
 use gdcm_model::dataset::{Band as BandOfComparison, Pair};
 use gdcm_model::units::db_to_ratio;

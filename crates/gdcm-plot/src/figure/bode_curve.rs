@@ -1,4 +1,8 @@
 //! A frequency response as drawn: magnitude and phase over frequency, with name and role.
+//!
+//! A *variant* is the study with other decisions, kept under a name and overlaid for comparison;
+//! *couplings* are the mixing of inputs and the feedback from outputs by which a physics model is
+//! corrected (M16).
 
 use std::sync::Arc;
 

@@ -1,5 +1,9 @@
 //! Data behind a condition's figures: its models with their roles, the representative physics model
 //! after each correction, and descriptions.
+//!
+//! A *bundle* contains a condition's physics models, or its identified models. Its *representative*
+//! is the model with the smallest mean distance to the others (M5), unless the engineer has chosen
+//! another: the physics representative is corrected, the identified one is the reference.
 
 use std::sync::Arc;
 

@@ -2,6 +2,9 @@
 //! their sources change. H_sim and H_ref are defined in `error.rs`. If coherence is ignored, all
 //! frequencies *count*; otherwise those in the reference's valid band at which its coherence
 //! reaches the minimum in the settings (M4a).
+//!
+//! The *branch* of a phase is the number of whole turns at each frequency, chosen in M6b so that
+//! the phase follows a delay.
 
 use std::sync::Arc;
 

@@ -1,5 +1,8 @@
 //! Reference lines in plots of deviations (`error` in names): targets, bounds, quantiles and MUAD
 //! envelopes. A positive delay is a delay that the physics model lacks.
+//!
+//! G and D are the gain and the delay that the physics representative lacks (M6); the *bounds*
+//! limit each channel's gain and delay in the fit (M7).
 
 use gdcm_method::correction::delta::GainSource;
 use gdcm_model::dataset::{BundleKind, Pair};

@@ -1,4 +1,10 @@
 //! Contributions to the scatter of net gains (M13.5).
+//!
+//! The *net gain* of a response is `k_o k_i`, the product of its channels' gains. Its *scatter* is
+//! the variance of `ln k_o k_i` between conditions at equal airspeed, or about the schedule. The
+//! expected part comes from the bundles: *trim* is the mean square change when another physics
+//! model of the bundle replaces the representative, *identification* the same with another
+//! identified model (M13.1, M13.2). The rest is *unexplained*.
 
 use gdcm_method::uncertainty::VarianceDecomposition;
 use gdcm_model::dataset::Pair;

@@ -1,4 +1,6 @@
 //! Panels over frequency, and figures with a plot for each response.
+//!
+//! MUAD: maximum unnoticeable added dynamics (MIL-STD-1797A), whose envelopes are in `muad.rs`.
 
 use std::sync::Arc;
 

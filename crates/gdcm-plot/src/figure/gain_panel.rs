@@ -1,5 +1,9 @@
 //! Panel for a gain or a delay: the optima in all conditions with their bounds, error bars and
 //! differences, and the schedule with its bands.
+//!
+//! A condition's *optimum* is its own correction; the search for it has *bounds* (M7). The *net
+//! gain* of a response is the product of its channels' gains. The confidence band is where the
+//! schedule may lie, the scatter band where another condition would fall (M13.6).
 
 use gdcm_method::schedule::Schedule;
 use gdcm_method::uncertainty::{BandWidths, Bar};

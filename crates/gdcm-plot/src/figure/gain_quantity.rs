@@ -88,7 +88,7 @@ pub struct GainAxes {
 /// A quantity defined by each condition's correction and by the schedule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GainQuantity {
-    /// Net gain of a response.
+    /// Net gain of a response: the product of its output channel's and its input channel's gain.
     NetGain(Pair),
     Gain(Channel),
     Delay(Channel),

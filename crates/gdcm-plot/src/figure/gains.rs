@@ -1,4 +1,8 @@
 //! Gains and delays against airspeed or over conditions (Figures 3, 4, 6 and 7).
+//!
+//! A condition's *optimum* is its own correction, to which the schedule over airspeed is fitted;
+//! the *net gain* of a response is the product of its channels' gains. A *variant* is the study
+//! with other decisions, kept under a name.
 
 use gdcm_method::correction::Channel;
 use gdcm_model::dataset::{Dataset, Pair};

@@ -27,7 +27,8 @@ struct Direction {
     offset: [f64; 2],
 }
 
-/// Directions in which a label may lie from its dot, the preferred first.
+/// Directions in which a label may lie from its dot, the preferred first: above right, below right,
+/// above left, below left, right, above, left, below.
 const DIRECTIONS: [Direction; 8] = [
     Direction {
         before: [0.0, 1.0],

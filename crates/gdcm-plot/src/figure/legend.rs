@@ -1,4 +1,7 @@
 //! Legend: an entry for each distinct key among a figure's marks.
+//!
+//! A *mark* is an element of a panel: a curve, dots, bars, a shaded range, a line or a note
+//! (`marks.rs`); its *key* is its text in the legend.
 
 use gdcm_study::results::requirement_role::RequirementRole;
 

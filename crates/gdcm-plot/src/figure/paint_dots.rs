@@ -30,8 +30,13 @@ struct Label<'m> {
 }
 
 /// Paints the dots whose centres are in the frame, without clipping them, and the labels beside
-/// dots and brackets. Leaders lie below the dots, texts above.
+/// dots and brackets.
+///
+/// 1. Paint the dots; collect the labels of dots and brackets.
+/// 2. Place the labels (`label_places.rs`), clear of the obstacles in the panel.
+/// 3. Paint the labels with their leaders: leaders below the dots, texts above.
 pub(super) fn dots_and_labels(placed: &Placed<'_>) -> PaintedDots {
+    // Step 1.
     let mut dots = Vec::new();
     let mut labels = Vec::new();
     for mark in &placed.panel.marks {
@@ -41,8 +46,10 @@ pub(super) fn dots_and_labels(placed: &Placed<'_>) -> PaintedDots {
             _ => {}
         }
     }
+    // Step 2.
     let labelled: Vec<LabelledDot> = labels.iter().map(|label| label.dot).collect();
     let places = place_labels(&labelled, &surroundings(placed));
+    // Step 3.
     let mut leaders = Vec::new();
     let mut texts = Vec::new();
     let mut labels_left_out = 0;

@@ -1,4 +1,8 @@
 //! Paints the marks that are clipped to a panel's frame: backgrounds, lines and bars.
+//!
+//! For paper and for the screen, with a single difference: an envelope with edges is two lines on
+//! paper, an area on the screen. Order of painting (`paint.rs`): [`backgrounds`]; grid, which the
+//! window draws itself; lines and bars in mark order ([`mark_lines`]); dots and notes on top.
 
 use super::drawing::{Color, Shape, Stroke};
 use super::marks::{Along, Bars, Brackets, Curve, Envelope, Guide, Intervals, Mark, Spans};
@@ -39,7 +43,8 @@ pub(super) fn backgrounds(placed: &Placed<'_>) -> Vec<Shape> {
 fn bands(placed: &Placed<'_>) -> Vec<Shape> {
     let mut shapes = Vec::new();
     for mark in &placed.panel.marks {
-        // `across` returns the lower end of a vertical line first.
+        // A band spans the frame's full height between two vertical lines, at its ends; `across`
+        // returns each line's lower end first.
         if let Mark::Band(band) = mark
             && let Some([lower_left, _]) = placed.across(Along::X, band.range.min)
             && let Some([_, upper_right]) = placed.across(Along::X, band.range.max)
@@ -141,6 +146,7 @@ fn curve_lines(placed: &Placed<'_>, curve: &Curve) -> Vec<Shape> {
         .collect()
 }
 
+/// Paints each bar as a rectangle; `beside` moves it off its x, where other bars may be.
 fn bar_areas(placed: &Placed<'_>, bars: &Bars) -> Vec<Shape> {
     let mut shapes = Vec::new();
     for (&[x, _], [foot, top]) in bars.bars.iter().zip(bars.ends()) {

@@ -1,5 +1,9 @@
 //! Named physics parameters: a parameter's value in each condition over airspeed, and the misfit
 //! that remains as parameters are added (M18.3, M18.4).
+//!
+//! A parameter's change is `z` times its plausible standard deviation. The *misfit* in conditions
+//! left out is the weighted squared deviation that remains in each condition when parameters and
+//! delays come from the other conditions, and only the gains from the condition itself (M18.4).
 
 use gdcm_method::physics::OfferedParameter;
 use gdcm_method::physics::diagnosis::{ConditionDiagnosis, ParameterDiagnosis};
@@ -125,7 +129,8 @@ impl ShownParameter<'_> {
     }
 
     /// Returns the parameter's change as fitted to each single condition, with the half-width of
-    /// its interval; both in the parameter's unit. Conditions without such a fit are skipped.
+    /// its interval (Student's t, with one degree of freedom less than conditions); both in the
+    /// parameter's unit. Conditions without such a fit are skipped.
     fn values(&self) -> Vec<PlacedValue<'_>> {
         let mut values = Vec::new();
         let degrees = self.conditions.len().saturating_sub(1).max(1) as f64;

@@ -1,5 +1,5 @@
 //! Effect of the physics parameters in a condition: the most improved responses without their
-//! differences in gain and delay, and the poles (M18.5).
+//! differences in gain and delay (G and D, M6), and the poles (M18.5).
 
 use std::sync::Arc;
 

@@ -1,4 +1,7 @@
 //! Every model's poles in the s-plane, for one condition, and the zeros of a response.
+//!
+//! A bundle's *representative* is the physics or identified model closest to the others, or the
+//! engineer's choice (M5).
 
 use nalgebra::Complex;
 

@@ -1,5 +1,9 @@
 //! Requirements: phase delay over bandwidth for every attitude response (M17.1), with the
 //! engineer's level boundaries.
+//!
+//! The *bandwidth* is the frequency up to which an attitude response leaves a phase margin of 45°
+//! and, if the stick commands a rate, a gain margin of 6 dB. The *phase delay* says how fast its
+//! phase falls beyond −180°. Flight has not judged the model where they are read above the band.
 
 use gdcm_method::requirements::LevelBoundaries;
 use gdcm_method::requirements::level_boundary::LevelBoundary;

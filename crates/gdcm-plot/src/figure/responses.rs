@@ -1,5 +1,8 @@
 //! A response's curves for every model in a condition, and the range that fits them. Cached from
 //! one drawn frame to the next.
+//!
+//! A [`ConditionSource`] holds the condition's models and results. The *representative* of the
+//! physics or identified models is the one closest to the others, or the engineer's choice (M5).
 
 use std::sync::Arc;
 

@@ -1,4 +1,7 @@
 //! Roles of curves, and their appearance in every figure.
+//!
+//! A *bundle* contains a condition's physics models, or its identified models; its *representative*
+//! is the model closest to the others, or the engineer's choice (M5).
 
 use serde::{Deserialize, Serialize};
 

@@ -1,5 +1,9 @@
 //! Cost of the schedule in a response: the net gain over airspeed, and J before the correction, at
 //! each condition's optimum and under the schedule.
+//!
+//! J is a response's cost, from its differences to the identified reference in magnitude and phase
+//! (M4). A condition's *optimum* is its own correction, to which the schedule over airspeed is
+//! fitted.
 
 use gdcm_method::fidelity::Cost;
 use gdcm_model::dataset::Pair;

@@ -1,5 +1,8 @@
 //! Values behind a figure at full precision: a single long table for programs, or a table per panel
 //! for readers.
+//!
+//! The values are those of a panel's marks (`marks.rs`), such as curves, dots and bars. An *area*
+//! is an envelope without edges, such as the 95 % band about a curve.
 
 use std::sync::Arc;
 

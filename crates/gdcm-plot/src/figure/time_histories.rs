@@ -1,5 +1,8 @@
 //! Models over time: their responses to a test input, and to a flight record with its tolerance
 //! corridors (M17.2).
+//!
+//! A *corridor* is the flight data plus and minus a tolerance. A *window* is a part of the record
+//! that is simulated from an initial state of its own.
 
 use gdcm_method::requirements::tolerance_check::ToleranceCheck;
 use gdcm_method::requirements::{RecordCheck, TestInputShape};

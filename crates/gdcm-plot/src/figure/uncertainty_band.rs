@@ -36,7 +36,8 @@ pub fn uncertainty_bands(dataset: &Dataset, pair: Pair, curves: &[BodeCurve]) ->
     bands
 }
 
-/// Returns the band about a curve, at those frequencies that lie within the deviations' grid.
+/// Returns the band about a curve, at those frequencies that lie within the grid of the standard
+/// deviations.
 fn band_about(curve: &BodeCurve, deviations: &ModelBands, pair: Pair) -> BodeBand {
     let sd_db = &deviations.sd_db()[pair];
     let sd_deg = &deviations.sd_deg()[pair];

@@ -27,18 +27,25 @@ const QUARTER: f64 = 0.552_284_749_830_793_4;
 /// document information; then five objects (`FontObjects`) for each font that the page uses,
 /// reduced to the letters that it uses.
 ///
+/// 1. Paint the shapes into the content stream, and number the letters by their first use.
+/// 2. Write catalog, page tree, content stream and fonts.
+/// 3. Write the page, which refers to them, and the document information.
+///
 /// # Errors
 /// Fails if a font cannot be read or reduced to the used letters, or if a stream cannot be
 /// compressed.
 pub fn pdf(drawing: &Drawing) -> io::Result<Vec<u8>> {
     let [catalog, pages, page, content, info] = [1, 2, 3, 4, 5].map(Ref::new);
+    // Step 1.
     let drawn = Page::paint(drawing);
+    // Step 2.
     let mut pdf = Pdf::new();
     pdf.catalog(catalog).pages(pages);
     pdf.pages(pages).kids([page]).count(1);
     let stream = packed(&drawn.content.finish())?;
     pdf.stream(content, &stream).filter(Filter::FlateDecode);
     let fonts = drawn.used.write(&mut pdf, Ref::new(6))?;
+    // Step 3.
     let mut entry = pdf.page(page);
     let [width, height] = drawing.size.map(|length| length as f32);
     entry

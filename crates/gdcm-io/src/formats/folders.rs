@@ -1,4 +1,5 @@
-//! Lists files in folders, sorted by name; numbers in names are compared by value.
+//! Lists files in folders and their subfolders, sorted by name; numbers in names are compared by
+//! value, so that "c2" comes before "c10".
 
 use std::fs;
 use std::io::Read;

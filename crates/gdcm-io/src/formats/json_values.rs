@@ -1,4 +1,5 @@
-//! Converts JSON with any structure to variables.
+//! Converts JSON with any structure to variables: objects become structs, rectangular lists of
+//! numbers and lists of strings become arrays, other lists cell arrays.
 
 use crate::formats::element_order::Places;
 use crate::formats::json_tree::Tree;

@@ -4,7 +4,7 @@
 //! ```text
 //! bytes -> format, by the first bytes         (extension: text formats and .mat only)
 //!       -> variables, text or archived files  (the formats, independent of models and records)
-//!       -> models or records                  (recognise)
+//!       -> models or records                  (import)
 //! ```
 //!
 //! Readers take memory and work from a `ReadingBudget` before they use it. The last argument to
@@ -75,7 +75,8 @@ pub(crate) struct Importer {
     pub(crate) read: fn(&[u8], &Path, &ReadingBudget<'_>) -> Result<Contents, FileError>,
 }
 
-/// All formats. The first that recognises a file is used; the last recognises any file.
+/// All formats. The first that recognises a file is used; the last recognises any file. `MAT`
+/// recognises every file with the extension `.mat`: formats before it have priority for such files.
 static FORMATS: [Importer; 14] = [
     NPY,
     ZIP,

@@ -1,4 +1,5 @@
-//! Notes on choices made while a file was read.
+//! Notes on choices made while a file was read. The *rules* in a note are those of the engineer for
+//! the files in a folder ([`Rules`](gdcm_model::assembly::Rules)).
 
 use std::fmt::{Display, Formatter, Result};
 

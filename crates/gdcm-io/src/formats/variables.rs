@@ -1,7 +1,7 @@
 //! Named variables from other programs' files.
 //!
-//! The readers of formats with named values (such as MATLAB, NumPy and JSON) return these;
-//! `recognise` determines what they mean for models and records.
+//! The readers of formats with named values (such as MATLAB, NumPy and JSON) return these; `import`
+//! determines what they mean for models and records.
 
 use crate::variable_fault::unread::Unread;
 

@@ -1,4 +1,6 @@
-//! Zip archives and the files in them.
+//! Zip archives and the files in them: a NumPy array (`.npy`) becomes a variable, a file in another
+//! known format is read with that format's importer, and any other file, or an archive within the
+//! archive, is ignored with a message.
 
 use std::collections::HashSet;
 use std::io::Read;

@@ -1,4 +1,6 @@
-//! Contradictions between a file's bytes and its format.
+//! Contradictions between a file's bytes and its format. To each message,
+//! [`VariableFault::Damaged`](super::VariableFault::Damaged) adds the variable, usually the
+//! position, and the remedy.
 
 use gdcm_model::number_format::counted;
 

@@ -1,4 +1,7 @@
-//! Content found in a file instead of the expected format.
+//! Content found in a file instead of the expected format, for the message of
+//! [`VariableFault::Format`](super::VariableFault::Format): "expected …, found …". The *rules* in a
+//! message are those of the engineer for the files in a folder
+//! ([`Rules`](gdcm_model::assembly::Rules)).
 
 use std::fmt::{Display, Formatter, Result};
 

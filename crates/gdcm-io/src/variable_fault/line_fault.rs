@@ -1,4 +1,5 @@
-//! Faults in a text line.
+//! Faults in a text line. To each message, [`VariableFault::Line`](super::VariableFault::Line) adds
+//! the variable and the line number.
 
 use gdcm_model::number_format::counted;
 

@@ -1,4 +1,5 @@
-//! Reasons why a value in MATLAB or Octave statements cannot be read.
+//! Reasons why a value in MATLAB or Octave statements cannot be read. The value becomes opaque
+//! ([`Value::Opaque`](crate::formats::variables::Value::Opaque)); the other statements are read.
 
 use gdcm_model::number_format::counted;
 

@@ -1,4 +1,5 @@
-//! Reasons why the variables in a file could not be read or written.
+//! Reasons why the variables in a file could not be read or written. A reason that concerns only
+//! one value, and leaves the others readable, is an [`unread::Unread`].
 
 pub mod column_place;
 pub mod damage;

@@ -1,4 +1,5 @@
-//! Reasons why a single value could not be read, although the file as a whole could.
+//! Reasons why a single value could not be read, although the file as a whole could: an opaque
+//! value ([`Value::Opaque`](crate::formats::variables::Value::Opaque)) holds such a reason.
 
 use crate::variable_fault::VariableFault;
 use crate::variable_fault::damage::Damage;

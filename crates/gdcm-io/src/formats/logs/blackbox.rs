@@ -201,6 +201,7 @@ impl Flight {
         let mut at = self.header.length;
         while at < bytes.len() {
             budget.work(field_count as u64, name)?;
+            // Step 1
             let mut packed = PackedBytes::new(bytes, at + 1);
             let mut frame = parse_frame(&self.header, bytes[at], &mut packed, &before);
             // A frame is damaged if a byte other than a frame letter follows it; but a zero follows
@@ -210,6 +211,7 @@ impl Flight {
             if !is_end && next.is_some_and(|next| !FRAME_LETTERS.contains(next)) {
                 frame = None;
             }
+            // Steps 2 and 3
             match frame {
                 Some(Frame::End) => break,
                 Some(Frame::Main(values)) if self.continues(&values, &before) => {

@@ -1,4 +1,5 @@
-//! Encoding and prediction of the fields in blackbox frames.
+//! Encoding and prediction of the fields in blackbox frames. Intra and predicted frames are main
+//! frames, each a sample of all fields (`blackbox.rs`).
 //!
 //! A frame stores how each field differs from a prediction. Decoding has two steps, and the
 //! flight's header gives each field a number for each step: the encoding says how the difference is

@@ -7,6 +7,9 @@
 //! G, H      GPS position, GPS home: not used
 //! E         event: a type, on which the length depends
 //! ```
+//!
+//! Intra and predicted frames are main frames: an intra frame is decoded by itself, a predicted
+//! frame from the main frames before it.
 
 use crate::formats::logs::blackbox_fields::Predecessors;
 use crate::formats::logs::blackbox_header::Header;

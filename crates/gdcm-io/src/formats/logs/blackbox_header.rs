@@ -1,4 +1,11 @@
-//! Blackbox flight header: lines `H key:value`.
+//! Blackbox flight header: lines `H key:value`, among them the fields in each kind of frame:
+//!
+//! ```text
+//! H Field I name:time,motor[0]  names of the fields in frames with the letter I
+//! H Field I signed:0,1          1 for a signed integer
+//! H Field I predictor:0,0       number of each field's predictor (blackbox_fields.rs)
+//! H Field I encoding:1,0        number of each field's encoding (blackbox_fields.rs)
+//! ```
 
 use std::collections::BTreeMap;
 
@@ -89,7 +96,7 @@ impl Header {
     }
 
     /// Returns the numbers in a header line such as "Field I signed"; a cell that is not a number
-    /// becomes 255.
+    /// becomes 255, which denotes no encoding.
     fn field_numbers(&self, kind: char, property: &str) -> Vec<u8> {
         self.field_cells(kind, property)
             .map(|cell| cell.parse().unwrap_or(u8::MAX))

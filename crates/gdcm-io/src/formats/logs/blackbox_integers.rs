@@ -1,5 +1,6 @@
 //! Packed integers in blackbox frames, encoded as in
-//! <https://betaflight.com/docs/development/Blackbox-Internals>.
+//! <https://betaflight.com/docs/development/Blackbox-Internals>. All methods that read return
+//! `None` if the bytes end early.
 
 /// Cursor over bytes that hold packed integers.
 pub(super) struct PackedBytes<'b> {

@@ -9,6 +9,10 @@
 //! FMTU        type, a unit letter and a multiplier letter for each field
 //! UNIT, MULT  meanings of these letters
 //! ```
+//!
+//! These messages give each type's *layout*: its fields with their positions
+//! (`dataflash_layouts.rs`). Other messages with a time stamp and numbers are samples, grouped into
+//! topics (`dataflash_topics.rs`).
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -50,6 +54,7 @@ pub(crate) const DATAFLASH: Importer = Importer {
 
 /// Reads a log in two passes: first all message descriptions, then the samples.
 fn read_dataflash(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, VariableFault> {
+    // First pass
     let mut descriptions = Descriptions::new();
     let mut messages = Messages::new(bytes, budget);
     while let Some(message) = messages.next(&descriptions.lengths)? {
@@ -64,6 +69,7 @@ fn read_dataflash(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, V
             fields_by_type.insert(*kind, fields);
         }
     }
+    // Second pass
     let mut topics = Topics::default();
     let mut messages = Messages::new(bytes, budget);
     while let Some(message) = messages.next(&lengths)? {

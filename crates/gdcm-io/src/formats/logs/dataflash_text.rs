@@ -1,7 +1,8 @@
 //! ArduPilot DataFlash logs as text: a line `NAME, value, value` for each message.
 //!
-//! FMT, FMTU, UNIT and MULT lines describe the messages. The values already include the
-//! multipliers.
+//! FMT, FMTU, UNIT and MULT lines describe the messages, as in the binary form (`dataflash.rs`);
+//! other lines with a time stamp and numbers are samples, grouped into topics
+//! (`dataflash_topics.rs`). The values already include the multipliers.
 
 use std::collections::BTreeMap;
 

@@ -1,5 +1,9 @@
 //! Samples in binary and text DataFlash logs, grouped by message name and instance.
 //!
+//! A *topic* holds the messages with the same name and instance, which is the number of the sensor;
+//! its columns share a time axis. A message type's *layout* lists its fields
+//! (`dataflash_layouts.rs`).
+//!
 //! Once all layouts are known, the steps in this order are: [`SampleFields::find`] for each message
 //! type, [`Topics::add`] for each message, and [`Topics::into_columns`] at the end.
 

@@ -1,4 +1,8 @@
 //! Channels and units for logged columns, according to each logging system's documentation.
+//!
+//! The channels are the controls LAT, LON, PED and COL (lateral, longitudinal, pedals, collective),
+//! the rates P, Q and R, the accelerations NX, NY and NZ, the attitudes PHI and THETA, and TARG,
+//! the input of ArduPilot's system identification mode.
 
 use crate::formats::reading_note::{ChannelAssignment, ReadingNote};
 use gdcm_sysid::records::RecordColumn;

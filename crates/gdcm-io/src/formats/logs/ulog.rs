@@ -7,8 +7,12 @@
 //!   D  message id, data of its topic     O  dropout [ms]    others: parameters, texts, marks
 //! ```
 //!
+//! A *topic* is a layout's name with an instance, which numbers topics that have the same layout;
+//! from the A message on, the D messages with its message id are this topic's samples.
+//!
 //! Time stamps count microseconds since the autopilot was started. A log truncated by a crash is
-//! read up to its last complete message.
+//! read up to its last complete message. *Appended data* are further messages, behind a log that a
+//! crash cut off.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -98,8 +102,8 @@ fn read_ulog(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, Variab
         budget.work(1, "")?;
         let from = at + MESSAGE_HEADER;
         let to = from + usize::from(u16::from_le_bytes([low, high]));
-        // A message that reaches into appended data was cut off by a crash: continue with the
-        // appended data.
+        // Step 1: a message that reaches into appended data was cut off by a crash; continue with
+        // the appended data.
         let next_part = appended.iter().copied().filter(|offset| *offset > at).min();
         if let Some(next_part) = next_part
             && to > next_part
@@ -107,10 +111,12 @@ fn read_ulog(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, Variab
             at = next_part;
             continue;
         }
+        // Step 2
         let Some(content) = bytes.get(from..to) else {
             is_cut = true;
             break;
         };
+        // Step 3
         if kind == b'B' {
             appended = appended_offsets(content)?;
         } else {

@@ -14,6 +14,9 @@
 //! opaque array      class system, class name, then a reference to an object
 //! ```
 //!
+//! An *opaque array* is usually a reference to an object; an *opaque value* ([`Value::Opaque`])
+//! holds only the reason why a value of any class could not be read.
+//!
 //! Source: "MAT-File Format", The MathWorks, "miMATRIX Format". It does not describe opaque arrays:
 //! for these, this reader follows the MatFileHandler, matio (Python) and MAT.jl projects.
 
@@ -78,6 +81,7 @@ impl ArrayReader<'_> {
         }
         let header = ArrayHeader::read(&mut data, self.budget)?;
         let value = self.read_value(&header, &mut data, path)?;
+        // The length in the tag may be wrong (`array_end.rs`).
         *contents = ReadArray {
             start,
             element,

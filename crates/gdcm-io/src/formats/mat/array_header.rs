@@ -41,7 +41,8 @@ pub(super) enum ArrayClass {
 #[derive(Clone, Debug)]
 pub(super) struct ArrayHeader {
     pub(super) class: ArrayClass,
-    /// Whether the elements are unsigned 64-bit integers.
+    /// Whether the elements are unsigned 64-bit integers, which `object_part.rs` reads without
+    /// rounding.
     pub(super) has_long_words: bool,
     pub(super) is_logical: bool,
     pub(super) is_complex: bool,

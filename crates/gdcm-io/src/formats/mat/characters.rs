@@ -1,4 +1,5 @@
-//! Character arrays in MATLAB files.
+//! Character arrays in MATLAB files: a string for each row. Files store a numeric code for each
+//! character, or encoded text.
 
 use crate::formats::mat::array_header::saturating_count;
 use crate::formats::mat::element::{DataKind, Element};

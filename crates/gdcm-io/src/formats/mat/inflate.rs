@@ -1,4 +1,5 @@
-//! Decompresses elements (zlib).
+//! Decompresses elements (zlib). The decompressed bytes are again an element: its tag, which gives
+//! the length, and its data.
 //!
 //! Source: "MAT-File Format", The MathWorks, "Data Compression"; RFC 1950.
 

@@ -9,6 +9,9 @@
 //! elements   an array for each variable, compressed or not; one without a name holds the objects
 //! ```
 //!
+//! `element.rs` describes elements, `object_part.rs` the object part, which holds the objects of
+//! MATLAB's `classdef` classes.
+//!
 //! Source: "MAT-File Format", The MathWorks, "Level 5 MAT-File Format".
 
 use std::collections::HashSet;
@@ -123,6 +126,7 @@ fn read_variable(
     if element.kind != DataKind::Packed {
         let mut contents = element.array_contents()?;
         let variable = read_named_array(&mut contents, reader)?;
+        // The length in the tag may be wrong (`array_end.rs`).
         *file = ReadArray {
             start,
             element,

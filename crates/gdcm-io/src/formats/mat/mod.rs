@@ -45,7 +45,7 @@ pub(crate) const MAT: Importer = Importer {
     read: |bytes, path, budget| Contents::variables(read(bytes, budget), path),
 };
 
-/// Reads the variables in file order. The first that applies decides the level:
+/// Reads the variables in file order. The first case that applies decides the level:
 ///
 /// 1. HDF5 signature: error, because `mat73` reads version 7.3.
 /// 2. Header of levels 5 to 7, unless the file does not begin with text and has a valid header of
@@ -56,17 +56,21 @@ pub(crate) const MAT: Importer = Importer {
 /// Parts of variables that cannot be decoded become [`super::variables::Value::Opaque`]; bytes that
 /// contradict the format are an error for the whole file.
 pub fn read(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
+    // Case 1
     if is_hdf5(bytes) {
         return Err(VariableFault::format(EXPECTED, FoundContent::Hdf5));
     }
     // A level-5 file begins with text: its first four bytes are nonzero, unlike in a level-4 file.
     let begins_with_text = bytes.get(..4).is_some_and(|start| !start.contains(&0));
     match FileVersion::read(bytes) {
+        // Case 2
         Some(FileVersion {
             order,
             major: LEVEL_5,
         }) if begins_with_text || !level4::begins(bytes) => level5::read(bytes, order, budget),
+        // Case 3
         _ if level4::begins(bytes) => level4::read(bytes, budget),
+        // Case 4
         Some(FileVersion { major, .. }) if begins_with_text => Err(VariableFault::format(
             EXPECTED,
             FoundContent::MatVersion { major },

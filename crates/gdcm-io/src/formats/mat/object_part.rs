@@ -14,8 +14,9 @@
 //!         array: cell array, whose cells describe all objects        read_cells
 //! ```
 //!
-//! `subsystem/mod.rs` explains the cells. The format is not published by The MathWorks; this reader
-//! follows the descriptions by the MatFileHandler, matio (Python) and MAT.jl projects.
+//! `MCOS` is the class system of `classdef` classes. `subsystem/mod.rs` explains the cells. The
+//! format is not published by The MathWorks; this reader follows the descriptions by the
+//! MatFileHandler, matio (Python) and MAT.jl projects.
 
 use std::ops::Range;
 

@@ -1,4 +1,5 @@
-//! Dataset elements, read within the budget.
+//! Dataset elements, read within the budget. A *dataset* is an array in an HDF5 file; `path` is its
+//! name in errors.
 
 use hdf5_pure::{Dataset, Datatype, ReferenceType};
 

@@ -126,6 +126,7 @@ fn stored_number(datatype: &Datatype) -> Option<StoredNumber> {
         } => {
             let base = stored_number(base_type)?;
             if has_truth_names(members) {
+                // The byte order does not matter: a logical value is true if any bit is set.
                 StoredNumber::new(NumberClass::Logical, base.size(), false)
             } else {
                 Some(base)

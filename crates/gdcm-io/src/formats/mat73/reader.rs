@@ -12,6 +12,10 @@
 //!                         struct array; each member holds a field, with a reference per record
 //! group, marked sparse    sparse matrix
 //! ```
+//!
+//! Anything else becomes an opaque value ([`Value::Opaque`]) with the reason. Three kinds of object
+//! occur: an [`Object`] is a dataset or a group, [`Objects`] are those of MATLAB's `classdef`
+//! classes, and [`variables::Object`] is an object as a value.
 
 use hdf5_pure::{Dataset, Group, Object};
 

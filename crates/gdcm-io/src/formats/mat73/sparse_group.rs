@@ -1,4 +1,5 @@
-//! Groups that hold a sparse matrix.
+//! Groups that hold a sparse matrix in compressed sparse column format: a dataset for each of its
+//! parts.
 
 use hdf5_pure::Object;
 

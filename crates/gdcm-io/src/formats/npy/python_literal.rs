@@ -1,4 +1,5 @@
-//! Parses the Python literals in array headers.
+//! Parses the Python literals in array headers, by conversion to JSON: `{'shape': (3, 2), }`
+//! becomes `{"shape":[3,2]}`.
 
 use serde_json::Value as Json;
 

@@ -1,4 +1,8 @@
 //! Assembles values from their parts, which the text and binary encodings store in the same order.
+//!
+//! A value's *parts* are, for example, its dimensions and its numbers. They follow its name and its
+//! type; the type determines the value's storage form (`form.rs`), and thereby which parts there
+//! are.
 
 use crate::formats::octave::form::{Element, Form, NumberParts};
 

@@ -9,6 +9,8 @@
 //!          columns, numbers
 //! floats   a byte with the storage type, then the numbers
 //! ```
+//!
+//! `assembly.rs` calls the methods of [`Parts`], each of which reads one part.
 
 use crate::formats::octave::assembly::{
     Parts, Sides, ValueHeading, byte_rows, read_value, texts_in_pages,
@@ -37,8 +39,8 @@ pub(crate) const OCTAVE_BINARY: Importer = Importer {
     read: |bytes, path, budget| Contents::variables(read_variables(bytes, budget), path),
 };
 
-/// Reads the variables up to the first with an unknown type, which becomes opaque and ends the
-/// reading.
+/// Reads the variables up to the first with an unknown type, which becomes opaque
+/// ([`Value::Opaque`]) and ends the reading.
 fn read_variables(
     bytes: &[u8],
     budget: &ReadingBudget<'_>,

@@ -1,4 +1,5 @@
-//! Storage forms of values, which follow from the type names that GNU Octave writes.
+//! Storage forms of values, which follow from the type names that GNU Octave writes: a "complex
+//! matrix" has a matrix's parts, and two numbers for each element.
 
 use crate::formats::stored_number::NumberClass;
 use crate::formats::variables::{Array, ElementKind};

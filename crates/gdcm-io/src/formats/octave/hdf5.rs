@@ -1,7 +1,7 @@
 //! GNU Octave's `save -hdf5` format: each value is a group with its type and its parts.
 //!
-//! The file is read like any HDF5 file, with groups as structs, which are then converted to the
-//! values that they represent:
+//! The file is read like any HDF5 file (`mat73`), with groups as structs, which are then converted
+//! to the values that they represent:
 //!
 //! ```text
 //! A/type    text such as "matrix"
@@ -82,8 +82,8 @@ impl<'v> OctaveGroup<'v> {
     }
 }
 
-/// Converts a group to the value that it represents, which is opaque if its type is not supported;
-/// `variable` is the value's name in errors.
+/// Converts a group to the value that it represents, which is opaque ([`Value::Opaque`]) if its
+/// type is not supported; `variable` is the value's name in errors.
 fn convert_group(
     group: &Value,
     variable: &str,

@@ -1,4 +1,7 @@
 //! Numbers in table cells, in notations from different programs.
+//!
+//! A *missing number* is an empty cell, or a word or sign that programs write instead of a number,
+//! such as "n/a"; its value is NaN.
 
 /// Words that programs write instead of a missing number.
 const MISSING: [&str; 14] = [
@@ -30,6 +33,7 @@ pub(super) fn cell_number(cell: &str, decimal_comma: bool) -> Option<f64> {
     if cell.is_empty() {
         return Some(f64::NAN);
     }
+    // Rust parses only decimal points: with decimal commas, only numbers without any mark.
     let has_other_mark = decimal_comma && cell.contains(['.', ',']);
     if !has_other_mark && let Ok(number) = cell.parse::<f64>() {
         return Some(number);

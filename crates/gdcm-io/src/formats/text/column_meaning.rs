@@ -3,11 +3,12 @@
 //! For each column, in this order:
 //!
 //! 1. Separate a unit at the end of the name, such as "mag_dB", unless the unit is already known.
-//! 2. The names "w" and "f" denote the frequency, unless the unit belongs to another quantity.
+//! 2. The names "w" and "f" denote the frequency, unless the unit is none that this module knows,
+//!    such as m/s.
 //! 3. Otherwise a word in the name gives the quantity, such as "phase" in "phase P/LAT"; what remains
-//!    of the name is the label of the response.
+//!    of the name is the label of the response: its output P and its input LAT.
 //! 4. Otherwise the unit, or a sign such as ∠, gives the quantity.
-//! 5. A missing unit may be implied by the word, such as rad/s by "omega".
+//! 5. A missing unit may be implied by the word, such as rad/s by "omega" or "w".
 
 use gdcm_model::units::physical_unit::PhysicalUnit;
 
@@ -39,11 +40,12 @@ struct Word<'n> {
 impl ColumnMeaning {
     /// Interprets a column by its name and its unit; without a given unit, the name may end in one.
     pub(super) fn interpret(name: &str, unit: Option<&str>) -> Self {
+        // Step 1
         let (name, unit) = match unit {
             Some(unit) => (name, Some(known_unit(unit))),
             None => split_unit(name),
         };
-        // With another unit, such as m/s, these letters denote other quantities.
+        // Step 2: with another unit, such as m/s, these letters denote other quantities.
         if unit != Some(KnownUnit::Other) {
             match name.trim().to_lowercase().as_str() {
                 "w" => {
@@ -69,7 +71,8 @@ impl ColumnMeaning {
         }
     }
 
-    /// Interprets a name by the words in it; by its unit if it contains no word from `WORDS`.
+    /// Interprets a name by the words in it (step 3), and adds the unit that they imply (step 5);
+    /// by its unit if it contains no word from `WORDS`.
     fn from_words(name: &str, unit: Option<KnownUnit>) -> Self {
         let words = words_of(name);
         for (quantity, known) in WORDS {
@@ -87,7 +90,7 @@ impl ColumnMeaning {
     }
 
     /// Interprets a name that contains no word from `WORDS` by its unit, by vertical bars around
-    /// it, or by the sign ∠.
+    /// it, or by the sign ∠ (step 4).
     fn from_unit_or_signs(name: &str, unit: Option<KnownUnit>) -> Self {
         let bare = name.trim();
         let has_strokes = bare.len() > 2 && bare.starts_with('|') && bare.ends_with('|');

@@ -1,4 +1,7 @@
 //! Splits columns with complex numbers, such as `(1.5-2j)`, into real and imaginary parts.
+//!
+//! The result is again a text, which is read like any other table (`table_reader.rs`). The first
+//! row with a complex number determines the separator and the complex columns.
 
 use crate::formats::text::cell_number::{cell_number, has_number};
 use crate::formats::text::lines::{comment, lines};

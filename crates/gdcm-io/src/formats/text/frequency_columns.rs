@@ -38,6 +38,7 @@ impl FrequencyColumns {
         let mut recognition = Recognition::new(table);
         let frequency = recognition.frequency()?;
         let responses = recognition.responses();
+        // Units that are neither given nor evident: the user must state them.
         if !recognition.unsaid.is_empty() {
             return Err(units_missing(table, recognition.unsaid));
         }

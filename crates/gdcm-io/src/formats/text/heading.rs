@@ -1,4 +1,7 @@
 //! Column names and units, from the lines before the numbers.
+//!
+//! A *cell* is the text between two separators; a line can be a heading only if it has a cell for
+//! each column (`heading_cells.rs`).
 
 use crate::formats::reading_note::ReadingNote;
 use crate::formats::text::heading_cells::heading_cells;
@@ -40,11 +43,13 @@ impl Heading {
             units: vec![None; layout.columns],
             notes: Vec::new(),
         };
+        // Step 1
         let mut lines = fitting_lines(above, layout).into_iter();
         let Some(nearest) = lines.next() else {
             heading.note_misfit(above, layout);
             return heading;
         };
+        // Steps 2 and 3
         let names = match lines.next() {
             // The names must be above the units: the next candidate may be a comment below them.
             Some(next) if is_units_line(&nearest.cells) && next.number < nearest.number => {

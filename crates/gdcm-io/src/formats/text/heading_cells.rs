@@ -15,6 +15,7 @@ use crate::formats::text::separator::Separator;
 /// column, only the numbers' separator and the whole line are tried.
 pub(super) fn heading_cells(line: &str, layout: Layout) -> Option<Vec<String>> {
     let columns = layout.columns;
+    // Blanks are tried last, because they may also be within the names.
     if layout.separator != Separator::Blanks
         && let Some(cells) = fitted(trimmed_cells(line, layout.separator, columns), layout)
     {

@@ -1,4 +1,11 @@
 //! Layout of the lines in a table: separator, decimal mark and number of columns.
+//!
+//! A *row* is a line whose cells are numbers or missing, with at least one number; its *width* is
+//! its number of cells. If the lines end in a *trailing separator*, an empty cell follows it.
+//!
+//! 1. For each separator and decimal mark, count the rows of each width (`Tally`).
+//! 2. The most frequent width gives a layout (`Tally::score`).
+//! 3. Take the layout with the most rows, in a tie the wider (`Score::beats`).
 
 use std::collections::BTreeMap;
 
@@ -34,6 +41,7 @@ impl Layout {
         text: &str,
         budget: &ReadingBudget,
     ) -> Result<Option<Self>, VariableFault> {
+        // Step 1
         let mut tallies = candidates();
         for (_, line) in lines(text) {
             budget.work(1, "")?;
@@ -47,6 +55,7 @@ impl Layout {
                 break;
             }
         }
+        // Steps 2 and 3
         let mut best: Option<Score> = None;
         for score in tallies.iter().filter_map(Tally::score) {
             if best.is_none_or(|best| score.beats(best)) {

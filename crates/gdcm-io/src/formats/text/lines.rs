@@ -68,6 +68,7 @@ pub(super) fn without_comment(line: &str) -> &str {
 
 /// Returns whether a line is a ruled line such as "-----", "|---|---|" or "=====".
 pub(super) fn is_rule(line: &str) -> bool {
+    // "- - -" is a row of missing numbers, not a rule.
     line.trim().len() >= 3
         && line.bytes().all(|byte| b"-=+|:_ \t".contains(&byte))
         && !line.trim().contains("- -")

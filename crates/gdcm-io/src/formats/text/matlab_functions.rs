@@ -1,4 +1,6 @@
 //! MATLAB functions that create models, structs and filled matrices from their arguments.
+//!
+//! A model, such as `ss(A, B, C, D)`, becomes a struct with the arguments as its fields.
 
 use crate::formats::text::matlab_value_error::{Position, ValueError, refused};
 use crate::formats::variables::{Array, StructArray, Value};

@@ -2,6 +2,9 @@
 //!
 //! Methods that read or skip something move past it; methods that return `None` or false do not
 //! move. A copy of the scanner keeps a position, to which reading can return.
+//!
+//! A `VariableFault` ends the reading; a `ValueError` may instead concern a single value that is
+//! not supported, after which the caller continues with the next statement.
 
 use crate::formats::text::lines::excerpt;
 use crate::formats::text::matlab_brackets::OpenBrackets;

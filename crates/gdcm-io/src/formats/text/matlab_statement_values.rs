@@ -1,4 +1,7 @@
 //! Values in MATLAB or Octave statements: numbers, strings, matrices, cell arrays and models.
+//!
+//! Expressions are not evaluated. Anything that is not supported is refused at its position
+//! (`refused`); the reader of statements then continues with the next statement.
 
 use crate::formats::element_order::first_index_fastest;
 use crate::formats::text::matlab_functions::{Call, Function};
@@ -103,6 +106,7 @@ impl ValueReader<'_, '_, '_> {
     ///    imaginary part, as in `1 - 2i`.
     /// 3. Otherwise, or if no imaginary number follows, the number of step 1 alone.
     fn read_complex(&mut self, in_matrix: bool) -> Result<Option<ComplexNumber>, ValueError> {
+        // Step 1
         let before = self.scanner.clone();
         let Some(Number {
             value,
@@ -112,6 +116,7 @@ impl ValueReader<'_, '_, '_> {
             *self.scanner = before;
             return Ok(None);
         };
+        // Step 2
         let behind = self.scanner.clone();
         let is_spaced = self.scanner.pass_blanks()?;
         let is_sign = matches!(self.scanner.peek(), Some('+' | '-'));
@@ -130,6 +135,7 @@ impl ValueReader<'_, '_, '_> {
         {
             return Ok(Some(ComplexNumber { re: value, im }));
         }
+        // Step 3
         *self.scanner = behind;
         Ok(Some(if is_imaginary {
             ComplexNumber { re: 0.0, im: value }

@@ -3,7 +3,8 @@
 //! Supported are numbers, strings, matrices and cell arrays containing these, variables and fields
 //! on either side of `=`, and the functions `ss`, `tf`, `zpk`, `struct`, `zeros`, `ones`, `eye`,
 //! `string` and `char`. Expressions are not evaluated and other statements not executed: they make
-//! the assigned variable opaque, with a remedy, or are noted.
+//! the assigned variable opaque, with a remedy, or are noted. An *opaque* value
+//! ([`Value::Opaque`]) holds only the reason why the value could not be read.
 
 use crate::formats::reading_note::{ReadingNote, SkippedStatement};
 use crate::formats::text::encoding::refuse_binary;
@@ -117,7 +118,7 @@ impl<'t> Reading<'t, '_> {
         }
     }
 
-    /// Reads a statement that does not assign function results. The first that applies:
+    /// Reads a statement that does not assign function results. The first case that applies:
     ///
     /// 1. name and equals sign: an assignment;
     /// 2. no name, or a word that begins a block: skipped with a note; until the block ends,
@@ -130,19 +131,23 @@ impl<'t> Reading<'t, '_> {
         let behind = self.scanner.clone();
         self.scanner.pass_blanks()?;
         let is_equality = self.scanner.rest().starts_with("==");
+        // Case 1
         if !path.is_empty() && !is_equality && self.scanner.take("=") {
             return self.read_assignment(&path, begin.position);
         }
         match path.as_slice() {
+            // Case 2
             [] => self.pass_over(begin, SkippedStatement::NotUnderstood),
             [word] if BLOCKS.contains(word) => {
                 self.open_blocks += 1;
                 self.pass_over(begin, SkippedStatement::Block)
             }
+            // Case 3
             [word] if BLOCK_ENDS.contains(word) => {
                 self.open_blocks = self.open_blocks.saturating_sub(1);
                 self.scanner.pass_statement(self.budget)
             }
+            // Cases 4 and 5
             [name, ..] => {
                 let changes_part = self.scanner.changes_part();
                 self.scanner = behind;

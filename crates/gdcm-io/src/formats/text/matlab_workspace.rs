@@ -1,4 +1,7 @@
 //! Variables assigned by MATLAB or Octave statements.
+//!
+//! An *opaque* variable is one whose value could not be read; it holds the reason, and neither its
+//! value nor its fields can be copied.
 
 use std::collections::HashMap;
 

@@ -1,4 +1,18 @@
 //! Matrices as text, as programs print them: a single matrix, or several with their names.
+//!
+//! ```text
+//! A =                    name
+//!   1.0e+03 *            common factor
+//!   Columns 1 through 2  begins a part: a group of columns, printed in consecutive rows
+//!     0.1   -2.0         row
+//! B =
+//!          u1     u2     column names, which may follow only a name with an equals sign
+//!     x1  0.1   -2.0     row; it begins with a name, because there are column names
+//! ```
+//!
+//! 1. Collect each matrix's rows, by part (`Reading::take_line`).
+//! 2. Read each part as a table, join the parts side by side, and multiply the numbers by the
+//!    common factor (`Reading::finish`).
 
 use std::collections::HashSet;
 
@@ -72,12 +86,14 @@ pub fn read_matrices(text: &str, budget: &ReadingBudget) -> Result<NamedMatrices
         notes: Vec::new(),
         budget,
     };
+    // Step 1
     for (number, line) in lines(text) {
         budget.work(1, "")?;
         if !line.trim().is_empty() && comment(line).is_none() && !is_rule(line) {
             reading.take_line(number, line)?;
         }
     }
+    // Step 2
     reading.finish()
 }
 

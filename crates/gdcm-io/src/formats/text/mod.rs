@@ -10,6 +10,9 @@
 //!       -> matrices with names               (matrix_text)
 //!       -> variables of MATLAB statements    (matlab_statements)
 //! ```
+//!
+//! The importers in this file read only MATLAB statements; they return any other text as
+//! `Contents::Text`, for which `import` calls the other readers.
 
 mod cell_number;
 mod clock_time;

@@ -1,5 +1,10 @@
 //! Columns with words or clock times in numeric tables: each word is replaced by a number, each
-//! time by seconds.
+//! time by seconds. The result is again a text, which is read like any other table.
+//!
+//! 1. Recognise the separator, and whether a column holds numbers, words or clock times
+//!    (`Numbering::recognise`).
+//! 2. Replace the words and times in each row (`Numbering::line`).
+//! 3. Note which number each word has (`Numbering::notes`).
 
 use std::collections::BTreeMap;
 
@@ -45,10 +50,12 @@ pub fn numbered_words(
     text: &str,
     budget: &ReadingBudget,
 ) -> Result<Option<NumberedText>, VariableFault> {
+    // Step 1
     let Some(mut numbering) = Numbering::recognise(text) else {
         return Ok(None);
     };
     budget.take(text.len() as u64, 2, "")?;
+    // Step 2
     let mut numbered = String::with_capacity(text.len());
     for (_, line) in lines(text) {
         budget.work(1, "")?;
@@ -60,6 +67,7 @@ pub fn numbered_words(
         }
         numbered.push('\n');
     }
+    // Step 3
     Ok(Some(NumberedText {
         text: numbered,
         notes: numbering.notes(),

@@ -4,6 +4,7 @@
 /// Column content in a frequency response table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Quantity {
+    /// Standard deviation, which is not used.
     Error,
     Coherence,
     Magnitude,

@@ -1,4 +1,5 @@
-//! A response's output and input, as named in a column heading.
+//! A response's output and input, as named in a column heading: in "phase P/LAT", output P and
+//! input LAT.
 
 use gdcm_model::names::response_name::{KnownChannels, ResponseName};
 
@@ -19,8 +20,14 @@ const FORWARD: [&str; 5] = ["->", "→", "=>", ">", " to "];
 const BACKWARD: [&str; 6] = ["<-", "←", "/", " due to ", " from ", " over "];
 
 impl ResponseLabel {
-    /// Parses a response name such as "P/LAT", "LAT->P", "LAT to P" or "P_LAT"; "frf" and similar
-    /// words name no channel, and any other text is an output name.
+    /// Parses a response name. The first that applies:
+    ///
+    /// 1. "frf" and similar words (`ANY_RESPONSE`): no channel;
+    /// 2. output and input, as in "P/LAT" (`BACKWARD`);
+    /// 3. input and output, as in "LAT->P" or "LAT to P" (`FORWARD`);
+    /// 4. a name that is common in flight dynamics, such as "roll_rate";
+    /// 5. output and input around a single underscore, as in "P_LAT";
+    /// 6. anything else: an output name.
     pub(super) fn parse(text: &str) -> Self {
         let text = clean(text);
         if ANY_RESPONSE.contains(&text.to_lowercase().as_str()) {

@@ -1,9 +1,10 @@
 //! Assembles frequency responses from table columns.
 //!
-//! A response needs two columns: real and imaginary part, or magnitude and phase. Columns belong to
-//! the same response if their names give the same output and input; a column whose name gives none
-//! belongs with the columns before it. A missing unit that the numbers do not reveal is not
-//! guessed: it is added to `unsaid`, and the user is asked.
+//! A response needs two columns: real and imaginary part (rectangular form), or magnitude and phase
+//! (polar form). Columns belong to the same response if their names give the same label, which is
+//! the output and the input; a column without a label belongs with the columns before it. A missing
+//! unit that the numbers do not reveal is not guessed: it is added to `unsaid`, and the user is
+//! asked.
 //!
 //! `Recognition::frequency` is called before `Recognition::responses`, so that notes and missing
 //! units are listed with the frequency first; afterwards, the results are in the public fields.
@@ -115,7 +116,9 @@ impl<'t> Recognition<'t> {
     /// 4. Read the coherence, if a column holds it.
     pub(super) fn responses(&mut self) -> Vec<RecognisedResponse> {
         let mut responses = Vec::new();
+        // Step 1
         for group in self.groups() {
+            // Step 2
             if let Some(column) = group.column(Quantity::Error) {
                 self.note(
                     column,
@@ -124,10 +127,12 @@ impl<'t> Recognition<'t> {
                 );
                 self.unused.push(column_name(self.table, column));
             }
+            // Step 3
             let Some(parts) = self.parts(&group) else {
                 self.note_incomplete(&group);
                 continue;
             };
+            // Step 4
             let mut coherence = None;
             if let Some(column) = group.column(Quantity::Coherence) {
                 coherence = Some(self.read_coherence(column));

@@ -1,5 +1,7 @@
 //! Reads tables of numbers in columns, written by programs or by hand.
 //!
+//! A *row* is a line with a number, or a missing number, for each column.
+//!
 //! 1. Recognise separator, decimal mark and column count (`layout.rs`).
 //! 2. Take each line as a row, or keep it as skipped.
 //! 3. Find names and units in the lines above the first row (`heading.rs`).
@@ -31,13 +33,16 @@ const COMPARED_HEADINGS: usize = 20;
 /// is not a complete row, and an exhausted budget.
 pub fn read_table(text: &str, budget: &ReadingBudget) -> Result<TextTable, VariableFault> {
     refuse_binary(text, EXPECTED)?;
+    // Step 1
     let Some(layout) = Layout::recognise(text, budget)? else {
         return Err(no_numbers(text));
     };
+    // Step 2
     let mut reading = Reading::new(layout, budget)?;
     for (number, line) in lines(text) {
         reading.take_line(number, line)?;
     }
+    // Step 3
     reading.finish(text)
 }
 
@@ -79,7 +84,7 @@ impl<'m> Reading<'m> {
         })
     }
 
-    /// Adds a line as a row, or skips it. The first that applies:
+    /// Adds a line as a row, or skips it. The first case that applies:
     ///
     /// 1. empty line: skipped;
     /// 2. line with a comment mark: a row if its cells fit, else skipped;
@@ -91,9 +96,11 @@ impl<'m> Reading<'m> {
     /// # Errors
     /// [`VariableFault`] if a row has the wrong number of columns, or text follows the first row.
     fn take_line(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
+        // Case 1
         if line.trim().is_empty() {
             return Ok(());
         }
+        // Case 2
         if comment(line).is_some() {
             // Check for rows first: "#N/A;1" and ";1;2" are rows that begin with a comment mark.
             return match self.layout.row_shape(line) {
@@ -101,9 +108,11 @@ impl<'m> Reading<'m> {
                 _ => self.skip_line(number, line),
             };
         }
+        // Case 3
         if is_rule(line) {
             return self.skip_line(number, line);
         }
+        // Cases 4 to 6
         if self.lines.is_empty() {
             self.take_line_before_rows(number, line)
         } else if self.repeats_heading(line) {

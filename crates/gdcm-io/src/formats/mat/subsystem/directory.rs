@@ -12,8 +12,8 @@
 //! ```
 //!
 //! A property list consists of its property count, 3 words per property (name index, content kind,
-//! content), and padding to a multiple of 8 bytes. Classes, objects and lists are counted from 0;
-//! their entries 0 are empty.
+//! content; [`Content`] lists the kinds), and padding to a multiple of 8 bytes. Classes, objects
+//! and lists are counted from 0; their entries 0 are empty.
 
 use crate::formats::mat::cursor::ByteOrder;
 use crate::formats::mat::element::decode_name;

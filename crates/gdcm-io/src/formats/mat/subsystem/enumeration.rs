@@ -6,6 +6,8 @@
 //! ValueNames               for each member, the index of its name in the directory
 //! ValueIndices             for each value, an index in `ValueNames`, from 0
 //! ```
+//!
+//! The directory (`directory.rs`) lists the names of all classes, properties and members.
 
 use crate::formats::mat::subsystem::directory::Directory;
 use crate::formats::variables::{Object, StructArray, Value};

@@ -2,7 +2,8 @@
 //!
 //! An object becomes a record with its saved properties, followed by the class defaults for the
 //! properties that are not saved. References in property values are replaced by the objects to
-//! which they point; `Assembly::open` prevents endless recursion.
+//! which they point; `Assembly::open` prevents endless recursion. An *opaque* value
+//! ([`Value::Opaque`]) holds only the reason why it could not be read.
 
 use std::collections::{HashMap, HashSet};
 
@@ -74,7 +75,7 @@ impl<'s> Assembly<'s> {
         }
     }
 
-    /// Returns the objects to which a reference points:
+    /// Returns the objects to which a reference points. The first case that applies:
     ///
     /// 1. a single `string` object: its strings, or opaque if their packing is unknown;
     /// 2. an object that is already being assembled, and thus contains itself: opaque;
@@ -89,12 +90,14 @@ impl<'s> Assembly<'s> {
     ) -> Result<Value, VariableFault> {
         let directory = &self.subsystem.directory;
         let class = directory.class(reference.class).unwrap_or("object");
+        // Case 1
         if let ("string", &[object]) = (class, reference.objects.as_slice()) {
             return Ok(match self.packed_texts(object)? {
                 Some(texts) => Value::Text(texts),
                 None => unreadable(class, ObjectFault::Strings, &path.text()),
             });
         }
+        // Case 2
         let contains_itself = reference
             .objects
             .iter()
@@ -102,6 +105,7 @@ impl<'s> Assembly<'s> {
         if contains_itself {
             return Ok(unreadable(class, ObjectFault::Cycle, &path.text()));
         }
+        // Case 3
         let open_before = self.open.len();
         let records = self.records(reference, path);
         // After an error, the objects that were being assembled are still marked as open.

@@ -1,4 +1,4 @@
-//! Strings in a `string` object, packed into 64-bit integers.
+//! Strings in a `string` object, packed into 64-bit integers, here called words.
 
 use crate::formats::variables::TextArray;
 use crate::reading_budget::{ReadingBudget, VariableFault};

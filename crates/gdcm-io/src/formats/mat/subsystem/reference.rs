@@ -1,4 +1,5 @@
-//! References to objects, as stored in MATLAB files.
+//! References to objects, as stored in MATLAB files: class and object numbers, which count the
+//! classes and objects in the directory (`directory.rs`).
 
 use crate::formats::element_order::element_count;
 use crate::formats::variables::{ElementKind, Value};

@@ -8,6 +8,9 @@
 //! happened by a [`message`] with a stable code ([`message_codes`]). [`cli::calls`] offers the
 //! commands as functions, which the Python module exposes. `docs/architecture.md` shows the crates
 //! below this one, and follows a click and a flight record through them.
+//!
+//! Section numbers (M4, M13.2, ...) are those of the pages listed under
+//! [Sections M1 to M18](gdcm_method#sections-m1-to-m18).
 
 pub mod cli;
 pub mod executor;

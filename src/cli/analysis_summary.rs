@@ -1,4 +1,8 @@
 //! Summary printed by `gdcm analyze`: the verdict first, then the details.
+//!
+//! A section is a text of labelled lines and tables; texts from files are `sanitized`, which
+//! removes control characters. With `--json` all output becomes one JSON object: sections add their
+//! cautions to it with `keep_caution`, because the printed text contains them anyway.
 
 use std::path::Path;
 

@@ -1,4 +1,8 @@
 //! `gdcm assemble`: makes a dataset from model files.
+//!
+//! *Rules* say what each model found in a file is: condition, role, channels, units, signs. They
+//! are proposed from the files, corrected by the engineer in a rules file, and overridden by
+//! options.
 
 use std::path::{Path, PathBuf};
 
@@ -33,6 +37,7 @@ use super::terminal::{self, caution, caution_for, error, print};
 /// # Errors
 /// An option or a file is wrong. The rules are incomplete: the missing items are printed first.
 pub(super) fn assemble(arguments: &AssembleArguments) -> Result<(), Failure> {
+    // Step 1.
     check_declared_once(arguments)?;
     let given_rules = arguments.rules.as_deref();
     let proposed_path = match given_rules {
@@ -44,11 +49,13 @@ pub(super) fn assemble(arguments: &AssembleArguments) -> Result<(), Failure> {
     let mut places: Vec<&Path> = vec![&arguments.out];
     places.extend(proposed_path.as_deref());
     outputs.check(&places)?;
+    // Step 2.
     let assembly = assembled_models(arguments)?;
     print(&model_table(&assembly))?;
     for caution in assembly.cautions() {
         terminal::caution(caution.code(), &assembly.caution_words(&caution));
     }
+    // Step 3.
     if let Some(path) = &proposed_path {
         add_rules(assembly.rules(), path, &mut outputs)?;
     }

@@ -1,4 +1,7 @@
 //! Printed bandwidths and phase delays, and the reasons why responses have none.
+//!
+//! A *role* is a version of a condition's model: physics, corrected, scheduled or identified.
+//! Bandwidth and phase delay are those of M17.1.
 
 use std::collections::BTreeSet;
 

@@ -1,5 +1,6 @@
 //! Units, factors and signs that options for `gdcm assemble` declare for channels, added to the
-//! rules.
+//! rules. The *scope* of a declaration is the set of models to which it applies: all, the physics
+//! or the identified models, or the models of some files.
 
 use std::collections::BTreeSet;
 

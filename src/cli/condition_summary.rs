@@ -1,4 +1,8 @@
 //! A condition's results, as printed: representatives, rejected models, responses and channels.
+//!
+//! G and D are the gain and the delay that a response needs (M6), J its mismatch cost (M4); a held
+//! response is constrained to its G and D. With leads, the *price* is the gain that a lead filter
+//! adds above the band.
 
 use gdcm_method::correction::channel_leads::ChannelLeads;
 use gdcm_method::correction::{ChannelCorrection, LeadPrice, Outcome};

@@ -1,5 +1,9 @@
 //! Evidence about the scheduled net gains, as printed: sources of their scatter, differences at
 //! equal airspeed, and the need for a second variable.
+//!
+//! Scatter is the variation of a net gain over the conditions. Trim and identification uncertainty
+//! explain a part of it (M13.5); the rest is a physical effect or a fault of the model. The second
+//! variable, altitude or mass, is a candidate for the schedule besides airspeed.
 
 use gdcm_method::schedule::SecondVariable;
 use gdcm_model::message_text::sanitized;

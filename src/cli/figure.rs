@@ -36,17 +36,20 @@ use super::terminal::print;
 /// 2. The analysis, with error bars if they are requested or the figure cannot do without them.
 /// 3. The figure, and the file.
 pub(super) fn figure(arguments: &FigureArguments) -> Result<(), Failure> {
+    // Step 1.
     let CommandStudy { study, outputs, .. } =
         CommandStudy::open(&arguments.study, arguments.force)?;
     figure_format(&arguments.out)?;
     outputs.check(&[&arguments.out])?;
     let place = FigurePlace::requested(&study, arguments)?;
+    // Step 2.
     let bars = if arguments.bars || arguments.view.needs_bars() {
         ErrorBars::Computed
     } else {
         ErrorBars::Omitted
     };
     let mut analysed = analyze_study(study, &arguments.study, bars)?;
+    // Step 3.
     let figure = drawn_figure(
         place,
         &mut analysed,

@@ -12,7 +12,8 @@
 //! ```
 //!
 //! Topics are tables of the same log, each with some of the channels and time stamps of its own;
-//! joining makes one record of them.
+//! joining makes one record of them. A record is *laid out* when its columns are assigned to
+//! channels.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -79,6 +80,7 @@ pub(super) fn laid_out_records(
     channels: &mut RecordChannels,
     dataset: Option<&Dataset>,
 ) -> Result<ReadRecords, Failure> {
+    // Step 1.
     let FoundRecords { tables, unread, .. } = found_records(&arguments.records)?;
     let mut rules = channels.inputs.iter().chain(&channels.outputs);
     let units_are_known = rules.all(|rule| !rule.unit.is_empty());
@@ -87,6 +89,8 @@ pub(super) fn laid_out_records(
         wish: arguments.time_wish(),
         reported: Reported::default(),
     };
+    // Step 2. Times of a part may count from the first sample, so that the record is laid out here
+    // to find its time column.
     let tables = with_topics_joined(tables, channels, &layouts.wish);
     let CutRecords { tables, wholes } = if arguments.part.is_empty() {
         CutRecords {
@@ -98,11 +102,15 @@ pub(super) fn laid_out_records(
             layouts.lay_out(table.clone(), channels).0.span_s()
         })?
     };
+    // Step 3.
     let mut records = layouts.lay_out_all(tables, channels);
+    // Step 4.
     check_parts(&arguments.part, &records, &wholes)?;
+    // Step 5.
     if !units_are_known {
         records = layouts.lay_out_again(records, channels);
     }
+    // Step 6.
     leave_out_copies(&mut records);
     let mut duplicates = Vec::new();
     for record in &records {
@@ -111,6 +119,7 @@ pub(super) fn laid_out_records(
         }
     }
     records.retain(|record| record.used);
+    // Step 7.
     let unclear = records.iter().filter(|record| !record.problems.is_empty());
     let wrong = unclear.count();
     if wrong > 0 {

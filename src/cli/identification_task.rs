@@ -1,6 +1,9 @@
 //! Identification of models from a condition's flight records: the task, its cautions with the
 //! options that remove their causes, and the texts about its result. `identify` creates the tasks;
 //! `identifications` and `plan` run them.
+//!
+//! chi2/dof is the mean squared residual relative to the noise, 1 if the model explains everything
+//! but the noise (M14).
 
 use std::path::{Path, PathBuf};
 

@@ -36,6 +36,7 @@ use super::terminal::caution;
 /// all files are written, if the records identify no input, or if some records were not read.
 pub(super) fn identify(arguments: &IdentifyArguments) -> Result<(), Failure> {
     let source = &arguments.source;
+    // Step 1.
     let read = source.records.iter().chain(&source.into);
     let outputs = OutputSet::new(existing(arguments.force), read.cloned().collect());
     let destination =
@@ -44,6 +45,7 @@ pub(super) fn identify(arguments: &IdentifyArguments) -> Result<(), Failure> {
     let dataset = destination.as_ref().map(|place| place.dataset.as_ref());
     let band = requested_band(source, dataset)?;
     let mut channels = requested_channels(source, dataset, band)?;
+    // Step 2.
     let tasks = identification_tasks(source, destination.as_ref(), &mut channels, band)?;
     let basis = IdentificationBasis {
         arguments,
@@ -51,6 +53,7 @@ pub(super) fn identify(arguments: &IdentifyArguments) -> Result<(), Failure> {
         reading: &tasks.reading,
         duplicates: &tasks.duplicates,
     };
+    // Step 3.
     let mut identifications = Identifications::new(basis, destination, outputs);
     identifications.run(&tasks.tasks)?;
     identifications.finish(tasks.tasks.len())?;
@@ -101,6 +104,7 @@ pub(super) fn identification_tasks(
     band: Band,
 ) -> Result<IdentificationTasks, Failure> {
     let dataset = destination.map(|place| place.dataset.as_ref());
+    // Step 1.
     let ReadRecords {
         mut records,
         unread,
@@ -108,10 +112,13 @@ pub(super) fn identification_tasks(
         duplicates,
         wholes,
     } = laid_out_records(arguments, channels, dataset)?;
+    // Step 2.
     hold_out(&arguments.hold_out, &mut records, &wholes)?;
     apply_record_remedies(arguments, &mut records, channels)?;
+    // Step 3.
     let mut preparation = requested_preparation(arguments, channels)?;
     set_holds(&mut preparation, &records, channels);
+    // Step 4.
     let groups = match destination {
         Some(destination) => destination.groups(records)?,
         None => vec![single_group(records)],

@@ -1,4 +1,5 @@
-//! Assessment of the schedule, as printed, with each condition in turn left out of the fit.
+//! Assessment of the schedule, as printed, with each condition in turn left out of the fit. J is
+//! the mismatch cost (M4), the schedule the correction as a function of airspeed (M11).
 
 use gdcm_model::message_text::sanitized;
 use gdcm_study::results::assessment_table::{AssessedModel, AssessmentChoice};

@@ -1,4 +1,7 @@
 //! Physics parameters set by hand on the command line (M18.5).
+//!
+//! A physics parameter is a named quantity of the physics model, such as an inertia, for which the
+//! dataset has models linearised with it changed. A value is its change from the physics model.
 
 use gdcm_model::message_text::sanitized;
 use gdcm_study::decisions::physics_settings::{ParameterDecision, PhysicsCorrection};

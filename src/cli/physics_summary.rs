@@ -1,4 +1,8 @@
 //! Part about physics parameters in the summary printed by `gdcm analyze` (M18).
+//!
+//! A *run* is a physics model linearised with one parameter changed, from which the diagnosis finds
+//! the change that each parameter needs; a *rerun* has several changed, to check the prediction. A
+//! *pull* is the change in a value if a condition is left out of the fit.
 
 use gdcm_method::physics::OfferedParameter;
 use gdcm_model::message_text::sanitized;

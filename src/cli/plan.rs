@@ -1,4 +1,8 @@
 //! `gdcm plan`: confidence intervals predicted after further frequency sweeps.
+//!
+//! An identification yields the Fisher information of its records, from which the intervals of the
+//! responses follow; a further sweep adds to it. A *target* is an interval that the engineer wants
+//! in a response at a frequency (M14).
 
 use std::path::Path;
 
@@ -44,6 +48,7 @@ use crate::executor::Pool;
 /// a plan (otherwise a condition without one is a caution); the work was stopped. After all is
 /// done: some records were not read.
 pub(super) fn plan(arguments: &PlanArguments) -> Result<(), Failure> {
+    // Step 1.
     let source = &arguments.source;
     let read = source.records.iter().chain(&source.into);
     let mut outputs = OutputSet::new(existing(arguments.force), read.cloned().collect());
@@ -55,8 +60,10 @@ pub(super) fn plan(arguments: &PlanArguments) -> Result<(), Failure> {
     let band = requested_band(source, dataset)?;
     let mut channels = requested_channels(source, dataset, band)?;
     let wanted = WantedFlights::new(arguments, &channels, band)?;
+    // Step 2.
     let IdentificationTasks { tasks, unread, .. } =
         identification_tasks(source, destination.as_ref(), &mut channels, band)?;
+    // Step 3.
     let mut plans: Vec<ConditionPlan> = Vec::new();
     let mut text = String::new();
     let mut failures: Vec<ConditionMessage> = Vec::new();
@@ -101,6 +108,7 @@ pub(super) fn plan(arguments: &PlanArguments) -> Result<(), Failure> {
             reason: format!("all {} conditions failed", tasks.len()),
         });
     }
+    // Step 4.
     if let Some(out) = &arguments.out {
         add_flight_plans(&plans, &wanted.channels, out, &mut outputs)?;
         outputs.persist()?;

@@ -1,5 +1,8 @@
 //! Delays and factors given for a channel in a single record (`--delay RECORD:CHANNEL=SECONDS`,
 //! `--factor RECORD:CHANNEL=X`).
+//!
+//! A record's *layout* assigns its columns to channels, with unit, factor and delay; a record with
+//! a remedy is laid out again.
 
 use std::collections::BTreeMap;
 

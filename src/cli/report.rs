@@ -27,6 +27,7 @@ use super::time_histories::{read_histories, simulated_histories};
 /// An option or a file is wrong, no condition has a result, or the work was stopped. Also returned,
 /// after the report is written, if some records were not read.
 pub(super) fn report(arguments: &ReportArguments) -> Result<(), Failure> {
+    // Step 1.
     let CommandStudy {
         study,
         loaded,
@@ -35,7 +36,9 @@ pub(super) fn report(arguments: &ReportArguments) -> Result<(), Failure> {
     let outputs = outputs.also_reading(arguments.histories.records.iter().cloned());
     outputs.check(&[&arguments.out])?;
     check_ending(&arguments.out)?;
+    // Step 2.
     let records = read_histories(&arguments.histories, &study.dataset, study.settings.band)?;
+    // Step 3.
     let StudyAnalysis {
         analysis,
         mut engine,
@@ -45,7 +48,8 @@ pub(super) fn report(arguments: &ReportArguments) -> Result<(), Failure> {
     } else {
         Some(simulated_histories(&analysis, &records)?)
     };
-    // The file is either the study or, without one, the dataset, which `loaded` names already.
+    // Step 4. The file is either the study or, without one, the dataset, which `loaded` names
+    // already.
     let mut study_file = arguments.study.file.as_deref();
     if study_file == loaded.path() {
         study_file = None;

@@ -1,6 +1,7 @@
 //! Channels requested by `gdcm identify` and `gdcm plan`, with the declarations about their
 //! samples: columns, topics, units and factors. Declarations for a single record
-//! (`RECORD:CHANNEL=…`) are applied later, to that record (`record_remedies`).
+//! (`RECORD:CHANNEL=…`) are applied later, to that record (`record_remedies`). A *reference* is a
+//! signal that drove the control loop from outside, such as a chirp.
 
 use gdcm_model::dataset::{Band, Dataset};
 use gdcm_model::names::channel_rule::ChannelRule;
@@ -50,18 +51,23 @@ pub(super) fn requested_channels(
     dataset: Option<&Dataset>,
     band: Band,
 ) -> Result<RecordChannels, Failure> {
+    // Step 1.
     let mut channels = match dataset {
         Some(dataset) => channels_of_dataset(arguments, dataset)?,
         None => named_channels(arguments),
     };
+    // Step 2.
     add_references(arguments, &mut channels)?;
+    // Step 3.
     set_locations(arguments, &mut channels)?;
+    // Step 4.
     check_held(arguments, &channels)?;
     channels.resampling = ResamplingSettings {
         band_end: Some(band.max()),
         rate_hz: arguments.resample,
         held: arguments.held.iter().cloned().collect(),
     };
+    // Step 5.
     declare_conversions(
         "--unit",
         &arguments.unit,

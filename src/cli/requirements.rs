@@ -54,6 +54,7 @@ pub(super) fn requirements(arguments: &RequirementsArguments) -> Result<(), Fail
         outputs,
     } = CommandStudy::open(&arguments.study, arguments.force)?;
     let mut outputs = outputs.also_reading(arguments.histories.records.iter().cloned());
+    // Step 1.
     let mut tables = tolerance_line(arguments, &study, &mut outputs)?;
     tables += &level_line(arguments, &study, &mut outputs)?;
     let Some(out) = &arguments.out else {
@@ -62,7 +63,9 @@ pub(super) fn requirements(arguments: &RequirementsArguments) -> Result<(), Fail
     };
     outputs.check(&requirement_paths(out))?;
     make_directory(out)?;
+    // Step 2.
     let records = read_histories(&arguments.histories, &study.dataset, study.settings.band)?;
+    // Step 3.
     let StudyAnalysis { analysis, engine } =
         analyze_study(study, &arguments.study, ErrorBars::Computed)?;
     let requirements = engine.requirements(
@@ -71,6 +74,7 @@ pub(super) fn requirements(arguments: &RequirementsArguments) -> Result<(), Fail
         &TerminalProgress::new("computing bandwidths"),
     )?;
     let histories = simulated_histories(&analysis, &records)?;
+    // Step 4.
     let results = RequirementResults {
         requirements: &requirements,
         time_histories: &histories,

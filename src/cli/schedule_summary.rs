@@ -1,4 +1,7 @@
 //! Schedule summary, as printed: scheduled net gains and delays over airspeed.
+//!
+//! The schedule gives the channels' gains and delays as a function of airspeed (M11); a net gain or
+//! net delay is the product or sum of a response's two channels.
 
 use gdcm_method::schedule::{Schedule, ScheduledQuantity};
 use gdcm_model::dataset::{ConditionId, Pair};

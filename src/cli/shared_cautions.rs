@@ -41,6 +41,7 @@ pub(super) fn cautions_section(analysis: &Analysis) -> String {
     let mut rows: Vec<RecurringRow> = Vec::new();
     let mut others: Vec<ConditionMessage> = Vec::new();
     let dataset = &analysis.study.dataset;
+    // Step 1.
     for condition in dataset.conditions() {
         let Some(result) = analysis.condition(condition.id()) else {
             continue;
@@ -65,6 +66,7 @@ pub(super) fn cautions_section(analysis: &Analysis) -> String {
         }
     }
     let mut text = String::new();
+    // Step 2.
     if let [row] = &rows[..]
         && let [alone] = &row.cautions[..]
     {
@@ -75,6 +77,7 @@ pub(super) fn cautions_section(analysis: &Analysis) -> String {
     } else if !rows.is_empty() {
         text += &recurring_table(dataset, &rows);
     }
+    // Step 3.
     for shared in shared_messages(others) {
         keep_caution(
             shared.message.code,

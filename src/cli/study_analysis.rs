@@ -53,6 +53,7 @@ pub(super) fn analyze_with_progress(
     bars: ErrorBars,
     receiver: ProgressReceiver<'_>,
 ) -> Result<StudyAnalysis, Failure> {
+    // Step 1.
     let mut engine = Engine::with_executor(Box::new(Pool));
     let bar = receiver.begin("analysing");
     let progress = &*bar;
@@ -60,6 +61,7 @@ pub(super) fn analyze_with_progress(
     if arguments.reject_suggested && reject_suggested(&mut study, &analysis)? {
         analysis = engine.analyze(&study, progress)?;
     }
+    // Step 2.
     if bars == ErrorBars::Computed {
         analysis.uncertainty = Some(Arc::new(engine.uncertainty(&analysis, progress)?));
         // No reason is lost below: an assessment fails only where the analysis has no couplings or
@@ -70,6 +72,7 @@ pub(super) fn analyze_with_progress(
         analysis.physics_assessment = assessed.and_then(Result::ok);
     }
     drop(bar);
+    // Step 3.
     report_failed_conditions(&analysis)?;
     Ok(StudyAnalysis { analysis, engine })
 }

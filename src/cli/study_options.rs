@@ -83,6 +83,7 @@ pub(super) fn apply(study: &mut Study, option: &'static str, edit: &Edit) -> Res
 /// 3. a check of the second scheduling variable in the conditions that are left in the schedule;
 /// 4. constrained responses; rejected models.
 pub(super) fn apply_options(study: &mut Study, arguments: &StudyArguments) -> Result<(), Failure> {
+    // Step 1.
     for GivenSetting { setting, words } in &arguments.settings.given {
         let option = setting.option;
         let words: Vec<&str> = words.iter().map(String::as_str).collect();
@@ -97,6 +98,7 @@ pub(super) fn apply_options(study: &mut Study, arguments: &StudyArguments) -> Re
         .iter()
         .any(|given| *given.setting == setting_table::PHYSICS);
     apply_parameters(study, &arguments.parameter, is_physics_given)?;
+    // Step 2.
     apply_signs(study, &arguments.sign)?;
     for &id in &arguments.hold_out {
         let edit = Edit::SetHeldOut {
@@ -106,7 +108,9 @@ pub(super) fn apply_options(study: &mut Study, arguments: &StudyArguments) -> Re
         apply(study, "--hold-out", &edit)?;
     }
     apply_requirements(study, arguments)?;
+    // Step 3.
     check_second_variable(study)?;
+    // Step 4.
     if let Some(list) = &arguments.on {
         constrain(study, list)?;
     }

@@ -1,6 +1,9 @@
 //! Flight records with which models are compared in the time domain (M17.2), for
 //! `gdcm requirements` and `gdcm report`. Unlike `flight_records`, which serves the identification,
 //! this module reports a record that cannot be used as a caution and goes on with the others.
+//!
+//! A record is *laid out* when its columns are assigned to channels; an *entry* is what the dataset
+//! states about a record.
 
 use gdcm_io::import::record_files::FoundRecords;
 use gdcm_model::dataset::{Band, ConditionId, Dataset};
@@ -64,6 +67,7 @@ pub(super) fn read_histories(
     if arguments.records.is_empty() {
         return Ok(ReadHistories::default());
     }
+    // Step 1.
     let FoundRecords { tables, unread, .. } = found_records(&arguments.records)?;
     let mut unread: Vec<String> = unread.iter().map(|path| sanitized_path(path)).collect();
     let mut channels = RecordChannels::of_dataset(dataset);
@@ -77,6 +81,7 @@ pub(super) fn read_histories(
     // The records, and at the same index each record's condition.
     let mut records: Vec<LaidOutRecord> = Vec::new();
     let mut ids: Vec<ConditionId> = Vec::new();
+    // Steps 1 and 2.
     for table in with_topics_joined(tables, &channels, &TimeSettings::default()) {
         let laid_out = laid_out_record(table, dataset, &channels);
         report_record(&laid_out);
@@ -91,10 +96,12 @@ pub(super) fn read_histories(
             records.push(laid_out.record);
         }
     }
+    // Step 3.
     leave_out_copies(&mut records);
     for record in &records {
         report_duplicates(record);
     }
+    // Step 4.
     let preparation = unchanged_channels(dataset);
     let mut conditions = Vec::new();
     for condition in dataset.conditions() {

@@ -1,4 +1,6 @@
-//! Execution of an analysis: executor, progress and cancellation.
+//! Execution of an analysis: executor, progress and cancellation. An executor runs pieces of work
+//! one after another or on several threads; progress counts steps, of which an analysis has a fixed
+//! total.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 

@@ -1,5 +1,9 @@
 //! Sentences about assessments: a correction's effect, its origin, and why a condition or response
 //! is left out (M12).
+//!
+//! An assessment compares J, the cost of a response's mismatch to the identified representative,
+//! before and after a correction: the optimum of each condition, or the schedule over airspeed. A
+//! held-out condition is excluded from the fit of the schedule.
 
 use gdcm_model::dataset::{ConditionId, Dataset};
 use gdcm_model::units::{number, signed};

@@ -1,5 +1,12 @@
 //! Sentences about constrained responses that miss their targets, the conflicts that cause this, and
 //! the remedies. The facts are in [`Unmatched`], [`ConflictKind`] and [`Remedy`].
+//!
+//! A response is *held* if it is constrained: the product of its channels' gains k (the sum of
+//! their delays τ) must equal its target. Constrained responses that share channels can form a
+//! *loop*, in which each target follows from the others. Lead filters are limited by their greatest
+//! gain `R_max` and the factor `n` of their lag (M15.3). `told_apart` formats two numbers with
+//! enough digits to distinguish them, `telling` a small one with more digits, so that it differs
+//! from 0.
 
 use gdcm_method::correction::channels::{pair_name, pair_names};
 use gdcm_method::correction::conflict::{Conflict, ConflictKind};

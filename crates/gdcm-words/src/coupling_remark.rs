@@ -1,4 +1,6 @@
-//! Sentences for the remarks on couplings: diagnosis, benefit and cost, cautions (M16.4).
+//! Sentences for the remarks on couplings: diagnosis, benefit and cost, cautions (M16.4). Couplings
+//! are a mixing of the inputs, in which each receives a share of the others, and a feedback K from
+//! outputs to inputs. J is the mismatch cost (M4).
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,7 @@
 //! Tables of couplings, their costs and their poles (M16.4).
+//!
+//! Couplings are a mixing of the inputs and a feedback from outputs to inputs, fitted to all
+//! conditions (M16). *Others* are the off-axis responses. J is the mismatch cost (M4).
 
 use nalgebra::{Complex, DMatrix};
 

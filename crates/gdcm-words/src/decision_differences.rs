@@ -1,4 +1,8 @@
 //! Differences between two sets of decisions, in words.
+//!
+//! In the words, *held* responses are constrained, *free* ones are not, *ignored* ones do not count
+//! in the objective. *Kept* models are those that are not rejected; the medoid of these represents
+//! the bundle unless another model is chosen.
 
 use std::collections::BTreeSet;
 use std::fmt;

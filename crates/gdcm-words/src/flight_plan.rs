@@ -1,4 +1,9 @@
 //! The next flight in words: tables with predicted intervals, advice, and ways to a target.
+//!
+//! The plan predicts by how much further frequency sweeps of an input would narrow the 95 %
+//! intervals of the identified model's responses (M14). *Advice* is about the responses that are
+//! not identified; a *target* is an interval that the engineer wants in a response, and its *ways*
+//! are the smallest changes to the sweeps that reach it.
 
 use gdcm_model::dataset::Pair;
 use gdcm_model::number_format::{counted, significant, telling};

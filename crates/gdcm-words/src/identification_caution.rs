@@ -1,4 +1,8 @@
 //! Cautions about identified models in two short lines, for lists; the full texts are in gdcm-sysid.
+//!
+//! χ²/dof is the mean squared residual relative to the noise, 1 if the model explains the record;
+//! the partial coherence of an input is the share that it explains of what the other inputs leave
+//! of an output (M14.2).
 
 use gdcm_model::number_format::{counted, decimals, significant};
 use gdcm_model::simulation::Signal;

@@ -1,5 +1,8 @@
 //! Sentences about lead filters: the lead that each response needs, the filters, and the checks to
 //! make before they are used (M15).
+//!
+//! A negative delay is a lead, realised by a filter that acts as a faster servo. Its *price* is the
+//! gain that it adds above the band, where the corrected model is not valid.
 
 use gdcm_method::correction::{Channel, LeadPrice};
 use gdcm_method::uncertainty::Scalar;

@@ -1,4 +1,5 @@
-//! Sentences about missing results: why a condition, a model, a record or a value has none.
+//! Sentences about missing results: why a condition, a model, a record or a value has none. A role
+//! is a version of a condition's model: physics, corrected, scheduled or identified.
 
 use gdcm_model::dataset::Dataset;
 use gdcm_study::jobs::identification_jobs::SimulationFailure;

@@ -1,4 +1,6 @@
 //! Sentences for the remarks on a condition's result, identical in the window and in a terminal.
+//! *Held* responses are the constrained ones; J is the mismatch cost, G and D the gain and the
+//! delay that a response needs (M4, M6).
 
 use gdcm_method::correction::solution::Unmatched;
 use gdcm_model::dataset::Dataset;

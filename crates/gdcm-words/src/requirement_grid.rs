@@ -1,4 +1,6 @@
 //! The requirement grid in words: names, values, limits, verdicts, and the grid as a table (M17.5).
+//! A row is a requirement, a column a condition, a cell the value of a corrected and of the physics
+//! model compared with flight. MUAD is maximum unnoticeable added dynamics, J the mismatch cost.
 
 use gdcm_method::requirements::level_boundary::AssessedLevel;
 use gdcm_method::requirements::mode_comparison::ModeTolerance;

@@ -1,4 +1,13 @@
 //! Requirements as tables (M17): bandwidths, modes and summary costs.
+//!
+//! ```text
+//! ω_BW       bandwidth
+//! ω_phase    frequency with 45 deg of phase margin
+//! ω_gain     frequency with 6 dB of gain margin
+//! ω180, τ_p  frequency where the phase is -180 deg; phase delay
+//! λ, ζ       pole and damping ratio of a mode
+//! MUAD       maximum unnoticeable added dynamics: envelopes of a model's error
+//! ```
 
 use gdcm_method::requirements::{BandwidthRule, LevelBoundaries, ModeVerdict, NamedBy};
 use gdcm_model::dataset::{ConditionId, Dataset};

@@ -1,5 +1,7 @@
 //! Sentences about the schedule: cautions, and its delays compared with the conditions' own
-//! corrections.
+//! corrections. The schedule gives the correction as a function of airspeed, fitted to the
+//! corrections that are optimal in the conditions. A cluster is a group of conditions at equal
+//! airspeed.
 
 use gdcm_method::correction::Channel;
 use gdcm_method::schedule::ScheduleCaution;

@@ -1,5 +1,9 @@
 //! Sentences about the cost of constraints: from their sensitivity, and from solutions in which one
 //! entry is released or additionally constrained.
+//!
+//! A *sensitivity* is the derivative of the objective with respect to a constraint that is active:
+//! a held response or a bound. A *toggle* is the objective after a single response is released or
+//! held, found by solving again.
 
 use gdcm_method::correction::Quantity;
 use gdcm_method::correction::channels::pair_name;

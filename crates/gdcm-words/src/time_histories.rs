@@ -1,4 +1,8 @@
 //! Tables that compare time histories within tolerances (M17.2).
+//!
+//! A tolerance forms a corridor about the measured output. `J_rms` is the weighted root mean square
+//! of the error, Theil's coefficient the error relative to the signals, 0 to 1 (M17.4). A role is a
+//! version of the model: physics, corrected, scheduled or identified.
 
 use std::collections::BTreeSet;
 

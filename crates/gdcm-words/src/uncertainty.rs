@@ -1,4 +1,9 @@
 //! Sentences and tables about uncertainty in the results (M13).
+//!
+//! An error bar has two parts: *trim*, the spread over the physics models at other trims, and
+//! *identification*, the spread over the identified models or their own standard errors. *Scatter*
+//! is the variation of a net gain over the conditions; *unexplained* is its part beyond the error
+//! bars. Holm's correction raises probabilities for the number of tests.
 
 use gdcm_method::uncertainty::bar::BarRemark;
 use gdcm_method::uncertainty::{Bar, Scalar, VarianceDecomposition};

@@ -1,4 +1,8 @@
 //! Models identified from flight records that a condition adopts instead of the models in its file.
+//!
+//! An identification proposes a first model by CT-PBSID, a subspace method, and *refines* it by
+//! minimising a frequency-domain cost; the response itself is also measured without a model. The
+//! bundle has models with neighbouring orders and models fitted without one record each (M14).
 
 use gdcm_model::dataset::condition::{ConditionError, ConditionRecord};
 use gdcm_model::dataset::model::Origin;

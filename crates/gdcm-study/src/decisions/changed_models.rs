@@ -61,7 +61,8 @@ impl Study {
         self.rebuild(self.taken.clone(), signs)
     }
 
-    /// Applies these adopted models and then the reversed signs to the dataset from the file.
+    /// Applies these adopted models and then the reversed signs to the dataset from the file, so
+    /// that the signs of adopted models are reversed too.
     fn rebuild(
         &mut self,
         models: BTreeMap<ConditionId, Arc<AdoptedModels>>,

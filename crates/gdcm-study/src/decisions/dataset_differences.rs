@@ -1,4 +1,8 @@
 //! Differences between two states of a dataset, and the inventory that detects them.
+//!
+//! A study is saved with the *inventory* of its dataset: airspeeds, and a fingerprint of each
+//! model, by which a changed model is recognised without storing it. A decision is *carried* over
+//! if it was made about an earlier state of the dataset, or about another dataset.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;

@@ -1,4 +1,7 @@
 //! Every kind of decision about a study, and the only code that applies it.
+//!
+//! A *held* response is constrained: its gain and delay must be matched exactly. A *kept* model is
+//! one that is not rejected. To *take* models means to adopt them from an identification.
 
 use std::sync::Arc;
 

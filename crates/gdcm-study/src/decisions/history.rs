@@ -1,4 +1,9 @@
 //! Undoes and redoes decisions.
+//!
+//! An undo step stores the whole study before its change. Decisions that *continue* one another,
+//! such as positions of a slider being dragged, form a single step. In a *session* (the settings
+//! are open in the window) each change of a setting is a step; when the session ends, consecutive
+//! ones are merged. State *beside* the study is state outside it that the same undo restores.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;

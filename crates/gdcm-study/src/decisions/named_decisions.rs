@@ -1,5 +1,8 @@
 //! Decisions with channels, conditions and models by name, so that they can be carried over from
 //! one dataset to another.
+//!
+//! In names, to *take* means to take over, and *taken* models are those adopted from an
+//! identification. *Requirements* are the settings for the qualification checks.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -1,5 +1,6 @@
 //! Decisions about named physics parameters (M18): which of them move the physics models, values
-//! set by hand, plausible changes.
+//! set by hand, plausible changes. A *plausible* change is one standard deviation of what the
+//! engineer holds possible; the fit keeps the values near nominal by it.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,4 +1,6 @@
-//! Settings for the qualification requirements (M17), on which no correction depends.
+//! Settings for the qualification requirements (M17), on which no correction depends. The
+//! requirement grid compares every condition with every requirement (M17.5); MUAD is maximum
+//! unnoticeable added dynamics, a pair of envelopes about flight (M17.4).
 
 use std::collections::BTreeSet;
 

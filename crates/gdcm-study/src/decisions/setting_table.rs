@@ -147,7 +147,8 @@ fn has_leads(study: &Study) -> bool {
     study.settings.phase == PhaseCorrection::Lead
 }
 
-/// Lead filter parameter `n`: the lag time constant is `1 / (n omega_B)` (M15.3).
+/// Lead filter parameter `n`: the lag time constant is `1 / (n omega_B)`, where `omega_B` is the
+/// band's upper end (M15.3).
 pub static LEAD_POLE: Setting = Setting {
     name: "n of the lead filters",
     key: "lead.n",

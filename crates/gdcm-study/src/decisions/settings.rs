@@ -1,5 +1,8 @@
 //! Settings common to all conditions, with their values as stored in files. Names, ranges and
 //! controls are in [`super::setting`].
+//!
+//! G and D are the gain and the delay that would match a response, J the cost of the mismatch,
+//! alpha the weight that holds the output gains near 1 and the output delays near 0 (M4 to M9).
 
 use std::fmt;
 

@@ -1,5 +1,5 @@
-//! Channels with reversed sign, and datasets with the reversal applied. In names, "turned" means with
-//! reversed sign.
+//! Channels with reversed sign, and datasets with the reversal applied. In names, "turned" means
+//! with reversed sign. Bundles of different origin may count a channel with opposite signs.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

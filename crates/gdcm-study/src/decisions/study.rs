@@ -1,4 +1,7 @@
 //! Studies: a dataset with every decision that the engineer has made about it.
+//!
+//! Decisions are settings common to all conditions, choices among the models of each condition, and
+//! signs, adopted models and requirements, which are common to all variants.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, LazyLock};

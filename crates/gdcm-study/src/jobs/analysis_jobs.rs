@@ -1,5 +1,9 @@
 //! Jobs on an analysis: proofs, toggles, variants, error bars, assessments, couplings,
 //! physics parameters.
+//!
+//! A [`Job`] is a long computation in parallel to the interactive analysis. Jobs are equal if they
+//! have the same output, so that a comparison leaves out what does not affect it; `Tools` are kept
+//! from one job to the next.
 
 use std::sync::Arc;
 

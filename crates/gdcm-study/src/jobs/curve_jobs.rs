@@ -1,4 +1,8 @@
 //! Jobs for drawing: a condition's responses, responses over the conditions, modes.
+//!
+//! A [`Job`] is a long computation in parallel to the interactive analysis. Jobs are equal if they
+//! have the same output, so that a comparison leaves out what does not affect it; `Tools` are kept
+//! from one job to the next.
 
 use std::sync::Arc;
 

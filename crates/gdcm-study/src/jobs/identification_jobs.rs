@@ -1,4 +1,8 @@
 //! Jobs on flight records: identifying models, simulating a model.
+//!
+//! A [`Job`] is a long computation in parallel to the interactive analysis; jobs are equal if they
+//! have the same output, and `Tools` are kept from one job to the next. A held-out record is
+//! excluded from the identification and validates its models (M14.6).
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;

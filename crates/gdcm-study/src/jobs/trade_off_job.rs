@@ -1,5 +1,8 @@
 //! Trade-off behind the gain weight α in a condition: how far the output gains are from 1, and how
 //! large J remains.
+//!
+//! α weighs the distance of the output gains from 1 in the objective of eq. (7); J is the mismatch
+//! cost that the gains leave (M4).
 
 use std::sync::Arc;
 

@@ -1,4 +1,13 @@
 //! A study's complete result.
+//!
+//! In each condition a physics and an identified model, the *representatives* of their bundles, are
+//! compared: G and D are the gain and the delay that would match a response (M6), J is the cost of
+//! the mismatch (M4). The physics models are first *moved* by the physics parameters (M18.5), if
+//! any, then changed by the *couplings* (M16), if any, and last corrected by gains, delays and
+//! leads. Functions with `file` in their names refer to the models before all of that.
+//!
+//! In names, *held* responses are the constrained ones, *wanted* and *asked* say what the study
+//! requests.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

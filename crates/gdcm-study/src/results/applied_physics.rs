@@ -6,6 +6,9 @@
 //! z_k        change of parameter k in plausible standard deviations
 //! L_k, Q_k   linear and quadratic increments of the matrix, from the runs of parameter k
 //! ```
+//!
+//! A *run* is a physics model linearised again with one parameter moved. A *plausible* standard
+//! deviation says how far the parameter may reasonably be from its value in the physics model.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

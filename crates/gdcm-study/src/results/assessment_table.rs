@@ -1,5 +1,9 @@
 //! Changes in J due to a correction, by response and condition, for the chosen model and correction
 //! (M12, Figures 8 to 19).
+//!
+//! J is the cost of a response's mismatch to the identified representative, smaller is better (M4).
+//! The schedule gives the correction as a function of airspeed (M11). The figures are those of the
+//! paper that the crate `gdcm-method` cites.
 
 use gdcm_method::correction::ChannelCorrection;
 use gdcm_method::fidelity::CostAverage;

@@ -1,6 +1,6 @@
 //! Cautions about results that are nevertheless available, and the typed reasons in them: why a
 //! response has no G and D ([`Undefined`]), why it is not finite ([`NotFinite`]), and gains out of
-//! range ([`GainOutOfRange`]).
+//! range ([`GainOutOfRange`]). G and D are the gain and the delay that would match a response (M6).
 
 use std::fmt;
 

@@ -1,5 +1,9 @@
 //! Computes bandwidth and phase delay for a condition's models, with intervals (M17.1).
 //!
+//! A *role* is a version of the model: the physics representative, the same corrected by its own
+//! correction or by the schedule, or the identified representative. A *swap* replaces a
+//! representative by another kept model.
+//!
 //! Source of the intervals, by role; the scheduled model has none, because no schedule is fitted to
 //! the swaps:
 //!

@@ -1,4 +1,8 @@
 //! Finds the remarks on a condition's result.
+//!
+//! A remark is a typed fact that is displayed with the result: a success, a caution or a failure.
+//! Constrained responses that share channels can form a *loop*, in which each net gain or delay
+//! follows from the others; their targets must then agree.
 
 use gdcm_method::schedule::Schedule;
 

@@ -1,9 +1,15 @@
 //! Finds the remarks on couplings: diagnosis, benefit and cost, cautions (M16.4).
 //!
-//! 1. Diagnosis: the largest entries of mixing and feedback that exceed their error bars.
-//! 2. Benefit: J without and with couplings, and whether they are worthwhile.
-//! 3. Cost: the largest change above the band, and the pole that moves farthest.
-//! 4. Cautions: poles, loops, and entries that the data do not determine.
+//! 1. Diagnosis: the largest entries of mixing and feedback that exceed their error bars
+//!    (`diagnosis`).
+//! 2. Benefit: J without and with couplings, and whether they are worthwhile (`verdict`).
+//! 3. Cost: the largest change above the band, and the pole that moves farthest
+//!    (`largest_change_above_band`, `farthest_pole`).
+//! 4. Cautions: poles, loops, and entries that the data do not determine (`coupling_cautions`).
+//!
+//! Couplings are a mixing of the inputs and a feedback from outputs to inputs (M16). The *share* of
+//! a mixing entry is the fraction of one input that another receives; that of a feedback entry is
+//! the largest movement of its input per unit of movement of the stick.
 
 use gdcm_method::couplings::coupling_shares::{
     FeedbackShare, cyclic_inputs, feedback_shares, mixing_shares,

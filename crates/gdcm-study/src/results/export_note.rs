@@ -91,7 +91,8 @@ pub enum ExportNote {
     },
     /// Tustin's rule converts the lead filters in sampled models.
     TustinError { error_deg: f64, band_top_rad_s: f64 },
-    /// Lead filters limit the valid frequency range.
+    /// Lead filters limit the valid frequency range; their price is the gain that they add above
+    /// it.
     NotValidAbove { price: LeadPrice },
     /// Conditions that the engineer excluded from the export.
     ConditionsNotChosen { conditions: Vec<ConditionId> },

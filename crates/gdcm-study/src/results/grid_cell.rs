@@ -1,4 +1,7 @@
 //! Cells in the requirement grid: each model's value and verdict, or why it is missing.
+//!
+//! A row of the grid is a requirement, a column a condition (M17.5). A cell compares two models,
+//! the corrected and the uncorrected one, with flight; a role is such a version of the model.
 
 use super::grid_requirement::RequirementLimit;
 use super::required_bandwidth::NoBandwidth;

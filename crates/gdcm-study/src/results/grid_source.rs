@@ -1,11 +1,13 @@
 //! Builds the requirement grid from a study's results, and judges its cells (M17.5).
 //!
-//! 1. Columns: every condition with a result.
-//! 2. Rows: the requirements that the dataset, the records and the tolerances allow.
+//! 1. Columns: every condition with a result (`conditions`).
+//! 2. Rows: the requirements that the dataset, the records and the tolerances allow
+//!    (`bandwidth_rows` to `summary_rows`).
 //! 3. Cells: for the corrected and the uncorrected physics model, the value, compared with the
-//!    row's limit; or why it is not determined.
+//!    row's limit; or why it is not determined (`cell`).
 //!
-//! `flown` denotes values of the identified model, the reference.
+//! `flown` denotes values of the identified model, the reference. A held-out record is a flight
+//! record that was excluded from the identification.
 
 use std::collections::BTreeSet;
 

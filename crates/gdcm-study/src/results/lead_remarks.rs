@@ -1,5 +1,10 @@
 //! Finds the remarks on lead: the lead that the responses need, whether they get it, and the checks
 //! to make before leads are used (M15).
+//!
+//! D is the delay that would match a response: by eq. (9) the median of the phase difference
+//! divided by frequency, over the band the slope of a line through it (M15.2). A negative D needs
+//! lead. A lead that all responses need points to the clock of the records, or to servo and sensor
+//! models (M15.6).
 
 use gdcm_model::statistics::median;
 use gdcm_model::units::ratio_to_db;

@@ -1,5 +1,6 @@
 //! Reasons for missing results, as typed facts with stable codes. The sentences are in the crate
-//! `gdcm-words`; the export writes them instead of the codes.
+//! `gdcm-words`; the export writes them instead of the codes. A role is a version of the model:
+//! physics, corrected, scheduled or identified.
 
 use serde::{Serialize, Serializer};
 

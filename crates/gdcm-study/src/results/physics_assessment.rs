@@ -1,5 +1,9 @@
 //! Benefit of the physics parameters: J, channel delays and couplings without and with them, J for
 //! conditions left out, and reruns (M18.5, M18.6).
+//!
+//! A parameter is a named quantity of the physics model; it *moves* the physics models by its
+//! value. A *rerun* is a model linearised again with several parameters moved, which checks the
+//! prediction. J is the mismatch cost (M4).
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -1,4 +1,9 @@
 //! Diagnosis of a study's physics parameters, with the runs and conditions that take no part (M18).
+//!
+//! A *run* is a physics model linearised again with one parameter moved; from the runs the values
+//! are fitted with which the physics models meet the identified models of all conditions. *Stepwise
+//! order* begins with the parameter that lowers the misfit of conditions left out most. A parameter
+//! is *named* if its interval excludes zero and it helps to predict these conditions (M18.4).
 
 use gdcm_method::physics::diagnosis::ParameterDiagnosis;
 use gdcm_method::physics::{

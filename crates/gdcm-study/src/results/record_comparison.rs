@@ -1,4 +1,5 @@
-//! Compares simulated responses with a flight record, tolerance by tolerance (M17.2).
+//! Compares simulated responses with a flight record, tolerance by tolerance (M17.2). A tolerance
+//! row names a quantity, the output from which it is computed, and the permitted error.
 
 use serde::Serialize;
 

@@ -1,5 +1,6 @@
 //! Compares a flight record with simulations of its condition's models, for plots with tolerance
-//! corridors about the measured outputs (M17.2).
+//! corridors about the measured outputs (M17.2). A role is a version of the model: physics,
+//! corrected, scheduled or identified.
 
 use gdcm_method::requirements::tolerance_check::ToleranceError;
 use gdcm_method::requirements::{RecordCheck, Tolerance, ToleranceTable};

@@ -122,8 +122,8 @@ fn without_records(analysis: &Analysis, records: &[HistoryRecords]) -> Vec<Missi
     missing
 }
 
-/// Prepares the records for conditions with a result; adds the reason to `missing` where that is
-/// impossible.
+/// Prepares the records for conditions with a result (step 1); adds the reason to `missing` where
+/// that is impossible.
 fn prepare_records<'a>(
     analysis: &'a Analysis,
     records: &'a [HistoryRecords],
@@ -221,8 +221,8 @@ fn simulations<'a>(
     simulations
 }
 
-/// Simulates a model with a record and compares the response with the tolerances, or returns the
-/// reason why that is impossible.
+/// Simulates a model with a record (step 2) and compares the response with the tolerances (step 3),
+/// or returns the reason why that is impossible.
 fn finding(
     comparison: &RecordComparison<'_>,
     simulation: &Simulation<'_>,

@@ -1,5 +1,6 @@
 //! Remarks on a condition's result as typed facts: each with a stable code, its kind and the
-//! decision that it suggests. The sentences are in the crate `gdcm-words`.
+//! decision that it suggests. The sentences are in the crate `gdcm-words`. In names, *held*
+//! responses are the constrained ones, *free* the others.
 
 use gdcm_method::correction::Channel;
 use gdcm_method::correction::conflict::Conflict;

@@ -1,5 +1,10 @@
 //! The identified representative's standard errors, from its coherence or its standard deviations
 //! (M13.2).
+//!
+//! A representative is the model that stands for its bundle. A measured response carries coherence,
+//! from which the errors of `ln G` and D follow; an identified model carries the standard
+//! deviations of its response, called *bands*. G is the gain and D the delay that would match a
+//! response (M6).
 
 use gdcm_method::uncertainty::coherence_error::CoherenceError;
 use gdcm_method::uncertainty::condition_bars::ReportedUncertainty;

@@ -45,9 +45,9 @@ pub struct BandwidthFinding {
     /// Whether the phase delay is computed from a least-squares line because the phase is not
     /// straight.
     pub phase_delay_of_line: bool,
-    /// Metrics that depend on the response above the band.
+    /// Metrics that depend on the response above the band, where flight has not judged the model.
     pub rests_above_band: Vec<&'static str>,
-    /// Metrics that depend on the response below the band.
+    /// Metrics that depend on the response below the band, where flight has not judged the model.
     pub rests_below_band: Vec<&'static str>,
     /// Intervals by metric name, where available.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]

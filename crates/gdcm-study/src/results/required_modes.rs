@@ -1,5 +1,8 @@
 //! The physics representative's modes, without and with the study's couplings, compared with the
 //! identified representative's, where both models have matrices (M17.3).
+//!
+//! A mode is a pole, or a conjugate pair of poles. Two modes match if their poles are close and
+//! their shapes over the outputs alike. In names, *flown* denotes the identified representative.
 
 use std::collections::BTreeMap;
 

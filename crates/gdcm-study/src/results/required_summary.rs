@@ -1,4 +1,6 @@
-//! Summary costs for the physics models against the identified representative (M17.4).
+//! Summary costs for the physics models against the identified representative (M17.4): mean J, the
+//! mismatch cost (M4), and the share of the band inside the MUAD envelopes, the limits of *maximum
+//! unnoticeable added dynamics* between which pilots do not notice a difference.
 
 use std::collections::BTreeMap;
 

@@ -10,6 +10,10 @@
 //! summary       mean J; share of the band inside the MUAD envelopes
 //! ```
 //!
+//! `omega_BW` is the bandwidth and `tau_p` the phase delay (M17.1), `lambda` a mode's pole (M17.3),
+//! J the mismatch cost (M4), MUAD maximum unnoticeable added dynamics (M17.4). `grid_source` builds
+//! the grid.
+//!
 //! A cell counts as met or outside only where its requirement has a limit and both models, or the
 //! record, determine its value.
 use serde::Serialize;

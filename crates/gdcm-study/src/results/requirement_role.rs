@@ -1,4 +1,8 @@
 //! Roles of a condition's models in the requirements, and each role's model for simulation.
+//!
+//! `H~` is the physics model with the study's couplings (M16), `M_O` and `M_I` are the gains,
+//! delays and leads of its output and input channels. Simulation needs matrices, so that delays
+//! become states, by Padé approximants.
 
 use serde::Serialize;
 

@@ -24,7 +24,8 @@ use crate::execution::Execution;
 const STEPS_PER_CONDITION: usize = 1;
 
 /// A response whose phase at the band's lowest frequency suggests a reversed channel in these
-/// roles' models: 45 to 135 deg (`AttitudeResponse::reversed_phase_deg` in `gdcm-method`).
+/// roles' models: 45 to 135 deg, where that of an attitude that follows its stick is 0 to -90 deg
+/// (`AttitudeResponse::reversed_phase_deg` in `gdcm-method`).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ReversedPhase {
     pub condition: ConditionId,

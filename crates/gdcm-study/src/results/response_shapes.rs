@@ -5,8 +5,9 @@
 //! H G exp(-j omega D),   G = median |H_ref| / |H|,   D = median Delta phi / omega      (eq. (5), (9))
 //! ```
 //!
-//! H is the physics representative, H_ref the identified one. Gains and delays belong to the
-//! channel correction; a physics parameter should improve what they cannot.
+//! H is the physics representative, H_ref the identified one, Delta phi the phase by which H leads
+//! H_ref. A *shape* is a response's magnitude and phase over frequency. Gains and delays belong to
+//! the channel correction; a physics parameter should improve what they cannot.
 
 use std::sync::Arc;
 

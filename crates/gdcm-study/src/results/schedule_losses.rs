@@ -1,4 +1,7 @@
 //! Losses of the schedule relative to the conditions' own corrections: omitted delays, higher J.
+//!
+//! The schedule gives gains and delays as a function of airspeed, fitted to the corrections that
+//! are optimal in each condition (M11). J is the mismatch cost (M4).
 
 use gdcm_method::correction::{Channel, ChannelCorrection};
 use gdcm_method::schedule::ScheduleCaution;

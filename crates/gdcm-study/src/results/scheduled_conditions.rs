@@ -1,5 +1,8 @@
 //! Conditions in the schedule, and alternative schedules: without a condition, in other forms
 //! (M11).
+//!
+//! The schedule gives the correction as a function of airspeed. A held-out condition is excluded
+//! from its fit, so that it can validate it.
 
 use gdcm_method::schedule::delay_scheduling::NOTABLE_DELAY_S;
 use gdcm_method::schedule::form_comparison::{FormComparison, compare_forms};

@@ -1,5 +1,11 @@
 //! Comparisons between every condition's models and its flight records, within tolerances (M17.2);
 //! `record_simulations::time_histories_of` computes them.
+//!
+//! ```text
+//! y, y^             flown and simulated output, n_t samples of n_o outputs
+//! J_rms             sqrt(1/(n_t n_o) sum (y - y^)' W (y - y^)),   W = 1 for deg, deg/s, ft/s, ft/s^2
+//! Theil coefficient rms(y - y^) / (rms y + rms y^), about the mean of y
+//! ```
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;

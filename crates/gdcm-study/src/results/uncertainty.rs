@@ -1,5 +1,9 @@
 //! Uncertainty of an analysis's results, components of their scatter over the conditions, and
 //! consequences for the schedule (M13).
+//!
+//! A *swap* repeats the analysis of a condition with another kept model instead of a representative
+//! (M13.1). A net gain is the product of a response's output and input gain, `k_o k_i`; *scatter*
+//! is its variation over the conditions. The second variable is altitude or mass, besides airspeed.
 
 use std::collections::BTreeMap;
 

@@ -1,5 +1,7 @@
 //! Verdict on the constrained responses: how many are matched in gain and in phase, and what
 //! remains.
+//!
+//! In names, *held* responses are the constrained ones. J is the mismatch cost (M4).
 
 use gdcm_method::correction::Channel;
 use gdcm_method::correction::conflict::ConflictKind;

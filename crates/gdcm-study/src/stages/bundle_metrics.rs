@@ -1,4 +1,10 @@
 //! Distances within each bundle, and discontinuity ratios for the physics bundle (M5).
+//!
+//! A *bundle* holds a condition's physics models or its identified models. The distance between two
+//! of its models is the root of their mean J (M4); the discontinuity ratio of a physics model says
+//! how much larger its distances are than its perturbed trim explains. Rejected models are
+//! included; models *set aside*, which lack a response that another model of the bundle has (M5b),
+//! are not.
 
 use std::sync::Arc;
 

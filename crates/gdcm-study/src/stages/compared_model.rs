@@ -1,4 +1,7 @@
 //! A model prepared for comparison with a model from the other bundle.
+//!
+//! Prepared means: magnitude and phase of every response, the numerically zero responses (M6a)
+//! removed, the reason for each missing response, and the coherence weights of an identified model.
 
 use nalgebra::Complex;
 

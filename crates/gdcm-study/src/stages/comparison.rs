@@ -11,6 +11,9 @@
 //! ```
 //!
 //! Step 6 is requested by the caller, `ConditionStages`.
+//!
+//! *Kept* models are those that the engineer has not rejected. G is the gain and D the delay that
+//! would match a response; alpha is the weight in the later optimisation, which uses G and D.
 
 use gdcm_method::correction::delta::Delta;
 use gdcm_model::dataset::{BundleKind, Dynamics};

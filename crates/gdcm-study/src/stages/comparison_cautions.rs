@@ -1,5 +1,7 @@
 //! Cautions about a condition's representatives: gains outside the computable range, frequencies
-//! without coherence, numerically zero responses.
+//! without coherence, numerically zero responses. A *representative* is the model that stands for
+//! its bundle (M5); these two are compared. A frequency has no weight if its coherence is too low
+//! or if it lies outside the valid band (M4a).
 
 use gdcm_method::correction::delta::Delta;
 use gdcm_model::dataset::{BundleKind, Dynamics, Model, Pair};

@@ -1,4 +1,8 @@
 //! A condition's frequency responses for drawing.
+//!
+//! Curves extend beyond the comparison band. The physics models are drawn as in the dataset, and
+//! *moved* by the physics parameters (M18.5) and *coupled* by mixing and feedback (M16). A
+//! *variant* is an alternative set of decisions, whose result is drawn beside the present one.
 
 use std::sync::{Arc, Mutex, PoisonError};
 

@@ -6,6 +6,9 @@
 //!     ConditionResponses  their responses on one grid, in file order
 //!       CoupledResponses  the responses of the physics models with couplings, computed on first use
 //! ```
+//!
+//! `H` is a model's response, `H~ = (I - H K)^-1 H M~` the same with couplings: the mixing `M~` of
+//! the inputs and the feedback `K` from outputs to inputs (M16.3).
 
 use std::sync::{Arc, OnceLock};
 

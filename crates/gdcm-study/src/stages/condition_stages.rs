@@ -10,7 +10,8 @@
 //! ```
 //!
 //! In brackets: the inputs on which a stage depends. *Moved* physics models are those to which
-//! physics parameters are applied (M18.5), *coupled* ones those with couplings (M16).
+//! physics parameters are applied (M18.5), *coupled* ones those with couplings (M16). A *swap*
+//! repeats stages 3 and 6 with another kept model instead of a representative (M13.1).
 
 use std::sync::Arc;
 
@@ -232,8 +233,8 @@ impl ConditionStages {
         })
     }
 
-    /// Replaces the physics models by the moved ones, where the condition has any; distances and
-    /// suggested outliers still refer to the models in the dataset.
+    /// Replaces the physics models by the moved ones, where the condition has any (stage 4);
+    /// distances and suggested outliers still refer to the models in the dataset.
     fn with_moved_models<'a>(&self, measured: Measured<'a>) -> Result<Measured<'a>, Cancelled> {
         let Some(moved) = &self.moved else {
             return Ok(measured);
@@ -449,8 +450,8 @@ impl ConditionStages {
         })
     }
 
-    /// Adds the couplings, if any, to the responses; coupled responses are computed on first use.
-    /// Nothing else applies couplings to a physics model for comparison.
+    /// Adds the couplings, if any, to the responses (stage 5); coupled responses are computed on
+    /// first use. Nothing else applies couplings to a physics model for comparison.
     fn coupled_responses(
         &mut self,
         run: Run<'_>,
@@ -484,7 +485,8 @@ impl Measured<'_> {
 }
 
 impl ComparedStages {
-    /// Compares the representatives; they are selected among the models without couplings.
+    /// Compares the representatives (stage 3). They are selected among the models without
+    /// couplings, because a correction must not hide a step of the physics model (M16.3).
     fn compare(
         &mut self,
         measured: &Measured<'_>,
@@ -518,7 +520,7 @@ impl ComparedStages {
         Ok(comparison)
     }
 
-    /// Compares the representatives, and computes the optimal delays and gains.
+    /// Compares the representatives, and computes the optimal delays and gains (stages 3 and 6).
     fn compare_and_solve(
         &mut self,
         measured: &Measured<'_>,

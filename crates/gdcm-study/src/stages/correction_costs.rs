@@ -4,6 +4,10 @@
 //! Both are compared under the same kinds of channel correction: none; each condition's own; the
 //! schedule; and, for conditions left out, the correction and the schedule fitted to the others.
 //! On-axis and off-axis responses are averaged separately.
+//!
+//! J measures the mismatch between the physics and the identified representative, smaller is better
+//! (M4). A channel correction gives each channel a gain and a delay; the schedule is this
+//! correction as a function of airspeed (M11).
 
 use gdcm_method::couplings::LeftOutFit;
 use gdcm_method::schedule::CostChange;

@@ -1,6 +1,15 @@
 //! Effects of the couplings on a condition: its poles, the feedback loop, and the response above
 //! the band (M16.4). H is the physics representative's response, K the feedback from outputs to
-//! inputs; near a singular `I - K H` the closed loop rings.
+//! inputs; near a singular `I - K H` the closed loop rings. H~ is the response with the couplings.
+//!
+//! ```text
+//! 1  smallest singular value of I - K H, from a tenth of the band's lower end to ten times its
+//!    upper end
+//! 2  |H~ - H| / |H| in dB at ten times the band's upper end, response by response
+//! 3  poles of every kept physics model, without and with couplings: shifts of the representative,
+//!    newly unstable poles of all
+//! 4  margin of the loop: minimum of step 1 from the band's lower end on
+//! ```
 
 use gdcm_method::correction::Pade;
 use gdcm_method::correction::lead_price::ABOVE_BAND;
@@ -54,17 +63,20 @@ pub(super) fn condition_effect(
     };
     let representative = result.representative_model(BundleKind::Physics);
     let response = PreparedModel::new(&representative.dynamics).response(grid);
+    // Step 1.
     let singular_values = coupled.fitted.matrices().least_singular_values(&response);
     let from_band = grid
         .omega()
         .partition_point(|omega| *omega < study.settings.band.min());
-    // The grid's last frequency is ten times the band's upper end.
+    // Step 2. The grid's last frequency is ten times the band's upper end.
     let above_band_db = relative_change_db(
         &response,
         &result.coupled_response(&response),
         grid.len() - 1,
     );
+    // Step 3.
     let poles = condition_poles(study, result, coupled, progress)?;
+    // Step 4.
     let margin = LoopMargin::find(&singular_values[from_band..], &grid.omega()[from_band..]);
     Ok(ConditionEffect {
         couplings: ConditionCouplings {

@@ -7,6 +7,10 @@
 //!    leads; its standard deviation, from the model or from its coherence; coherence weights
 //! 4  fit to all conditions                                           (`gdcm_method::couplings`)
 //! ```
+//!
+//! Couplings are a mixing of the inputs and a feedback from outputs to inputs, the same for all
+//! conditions. Step 1 is `ConditionStages::coupling_source`, step 2 is in `CouplingFitKey::new`.
+//! Without step 3 the feedback would imitate a delay (M16.1).
 
 use std::sync::Arc;
 

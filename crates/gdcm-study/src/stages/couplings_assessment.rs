@@ -7,6 +7,10 @@
 //! 3  J without and with couplings                        (`correction_costs`)
 //! 4  each condition: moved poles, singular values, change above the band   (`coupling_effects`)
 //! ```
+//!
+//! Couplings are a mixing of the inputs and a feedback from outputs to inputs, fitted to all
+//! conditions (M16). J is the mismatch cost (M4). A condition left out shows whether they hold for
+//! a condition to which they are not fitted.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -52,6 +56,7 @@ impl Engine {
         progress: &dyn Progress,
     ) -> Result<Option<AssessedCouplings>, Cancelled> {
         let shares = Shares::new(progress);
+        // Step 1.
         let portion = Portion::new(&shares, ANALYSIS_SHARE, LEAVING_OUT);
         let without = self.analyze(&with_couplings(study, CouplingCorrection::None), &portion)?;
         portion.finish()?;
@@ -63,7 +68,9 @@ impl Engine {
             Some(Err(error)) => return Ok(Some(Err(error.clone()))),
             Some(Ok(fitted)) => Arc::clone(fitted),
         };
+        // Step 2.
         let left_out = self.leave_out_each(&without, &with, &fitted, &shares)?;
+        // Step 4.
         let grid = margin_grid(study.settings.band);
         let results: Vec<&ConditionAnalysis> = with.conditions.values().flatten().collect();
         let share = EFFECTS_SHARE / results.len().max(1) as f64;
@@ -97,6 +104,7 @@ impl Engine {
             fitted,
             level: study.settings.uncertainty.level,
             band: study.settings.band,
+            // Step 3.
             costs: correction_costs(&without, &with, &costs_left_out),
             omega: grid.omega().into(),
             conditions,

@@ -1,4 +1,8 @@
 //! Analyses a study stage by stage; each stage is cached while its inputs stay the same.
+//!
+//! Physics parameters change the matrices of the physics models, which are then called *moved*
+//! (M18.5); couplings mix the inputs and feed outputs back (M16). Both precede the gains and
+//! delays. A condition *held out* is analysed, but takes no part in the fits to all conditions.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -168,6 +172,7 @@ impl Engine {
         first: Option<WantedFirst>,
         progress: &dyn Progress,
     ) -> Result<Analysis, Cancelled> {
+        // Step 1.
         self.take(&study.dataset);
         let grid = FrequencyGrid::logarithmic(study.settings.band, study.settings.points);
         let execution = Execution::new(self.executor.as_ref(), progress, steps(study));
@@ -177,13 +182,18 @@ impl Engine {
             proofs: self.proofs,
             execution: &execution,
         };
+        // Step 2.
         let physics = fit_physics(run, &mut self.physics, &mut self.conditions)?;
         let applied = physics.as_ref().and_then(|outcome| outcome.as_ref().ok());
         move_models(&mut self.conditions, applied, &self.known);
+        // Step 3.
         let couplings = fit_couplings(run, &mut self.couplings, &mut self.conditions)?;
         let fitted = couplings.as_ref().and_then(|outcome| outcome.as_ref().ok());
+        // Step 4.
         let mut conditions = analyze_conditions(run, &mut self.conditions, fitted, first)?;
+        // Step 5.
         let doubts = add_doubts(study, &mut conditions);
+        // Step 6.
         let settings = schedule_settings(study, &conditions);
         let schedule = Schedule::fit(&scheduled_points(study, &conditions), settings);
         let apart = signed_delays_apart(study, &conditions);
@@ -201,12 +211,14 @@ impl Engine {
             uncertainty: None,
         };
         add_schedule_cautions(&mut analysis, apart);
+        // Step 7.
         let choice = AssessmentChoice::of_paper(&study.settings);
         let ids: Vec<ConditionId> = study.dataset.ids().collect();
         let assessment = execution.each(ids.len(), 0, |index| {
             assessed(&analysis, ids[index], choice).map(|assessed| assessed.changes)
         })?;
         analysis.assessment = ids.into_iter().zip(assessment).collect();
+        // Step 8.
         let costs = schedule_cost_cautions(&analysis);
         add_schedule_cautions(&mut analysis, costs);
         Ok(analysis)

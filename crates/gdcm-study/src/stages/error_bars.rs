@@ -9,7 +9,9 @@
 //! ```
 //!
 //! Steps 3 to 5 need a schedule and the error bars of every scheduled condition. Holm's correction
-//! adjusts probabilities for the number of tests.
+//! adjusts probabilities for the number of tests. A *swap* repeats the analysis of a condition with
+//! another kept model instead of a representative (M13.1); the scatter is the variation of a net
+//! gain over the conditions.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -44,7 +46,9 @@ impl Uncertainty {
         let study = &analysis.study;
         let level = study.settings.uncertainty.level;
         let pairs: Vec<Pair> = study.dataset.measuring_pairs().marked().collect();
+        // Step 1.
         let conditions = condition_bars(analysis, swaps);
+        // Step 2.
         let (differences, too_many_differences) =
             match airspeed_differences(&study.dataset, &conditions, &pairs) {
                 Ok(differences) => (differences, None),
@@ -55,8 +59,11 @@ impl Uncertainty {
             level,
             differences,
             too_many_differences,
+            // Step 3.
             scatter: evidence.scatter(&pairs),
+            // Step 4.
             bands: evidence.bands(level),
+            // Step 5.
             second_variables: evidence.second_variables(&pairs, level),
             conditions,
         }

@@ -1,4 +1,6 @@
-//! Cautions about the models alone: responses that cannot be computed or compared in the band.
+//! Cautions about the models alone: responses that cannot be computed or compared in the band, and
+//! channels assigned by position because the files do not name them. Cautions about the two models
+//! that are compared are in `comparison_cautions`.
 
 use gdcm_method::fidelity::distance::MeasuredPairs;
 use gdcm_model::dataset::{BundleKind, Condition, ConditionId, Dynamics, Pair};

@@ -8,7 +8,8 @@
 //! 4  spread of the results over the swaps of each bundle
 //! ```
 //!
-//! "Figures" are a model pair's gains, as logarithms, and its delays \[s\].
+//! "Figures" are a model pair's gains, as logarithms, and its delays \[s\]. A phase difference is
+//! known up to whole turns; its *branch* is the number of turns chosen (M3).
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -202,6 +203,7 @@ impl SwapMemo {
             self.kept.clear();
             self.key = Some(key);
         }
+        // Step 1.
         let mut replacements = Vec::new();
         for kind in BundleKind::BOTH {
             for model in input.others(kind) {
@@ -219,6 +221,7 @@ impl SwapMemo {
         if is_mean {
             wanted.push(representatives);
         }
+        // Step 2.
         self.compute_missing(input, wanted, replacements.len(), optimum)?;
         let swaps: Vec<ModelSwap> = replacements
             .into_iter()
@@ -228,11 +231,13 @@ impl SwapMemo {
                 figures: self.figures(representatives.with(bundle, model)),
             })
             .collect();
+        // Step 3.
         let base = match (is_mean, self.figures(representatives)) {
             (false, _) => representative_figures(input.analysis),
             (true, Some(base)) => Figures::clone(&base),
             (true, None) => representative_figures(input.analysis).map(|_, _| None),
         };
+        // Step 4.
         let spread = ConditionSpread::new(
             &base,
             &bundle_figures(&swaps, BundleKind::Physics),

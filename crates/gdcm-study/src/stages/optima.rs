@@ -7,7 +7,9 @@
 //! ```
 //!
 //! Without leads, step 2 is skipped and the gains follow from the whole difference. The file also
-//! estimates the benefit of leads that are not requested (`SolvedProblems::offer`).
+//! estimates the benefit of leads that are not requested (`SolvedProblems::offer`). G is the gain
+//! and D the delay that would match a response (M6). A negative delay, which only signed delays
+//! allow, is a lead.
 
 use std::sync::Arc;
 
@@ -112,8 +114,10 @@ impl SolvedProblems {
     /// [`NoOptima`] where a problem has no solution, or the run is cancelled.
     pub(crate) fn solve(&mut self, input: &SolveInput<'_>) -> Result<Optima, NoOptima> {
         let design = input.lead_design();
+        // Step 1.
         let delay_problem = Arc::new(input.delay_problem(design.as_deref()));
         let delays = self.delays(input, &delay_problem)?;
+        // Step 2.
         let compensated = match design {
             None => None,
             Some(design) => {
@@ -122,6 +126,7 @@ impl SolvedProblems {
                 Some(LeadCompensated::new(input.mismatch, leads))
             }
         };
+        // Step 3.
         let gain_problem = Arc::new(input.gain_problem(compensated.as_deref()));
         let gains = self
             .gains

@@ -7,6 +7,10 @@
 //! 3  J without and with the parameters                                  (`correction_costs`)
 //! 4  reruns against the prediction                                      (`rerun_checks`)
 //! ```
+//!
+//! A parameter is a named quantity of the physics model, such as an inertia; its value is found
+//! from *runs*, which are models linearised again with one parameter moved. A *rerun* is a model
+//! with several moved, to check the values (M18.6). J is the mismatch cost (M4).
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -57,6 +61,7 @@ impl Engine {
         progress: &dyn Progress,
     ) -> Result<Option<AssessedPhysics>, Cancelled> {
         let shares = Shares::new(progress);
+        // Step 1.
         let portion = Portion::new(&shares, WITHOUT_SHARE, LEAVING_OUT);
         let without = self.analyze(&with_physics(study, PhysicsCorrection::Off), &portion)?;
         portion.finish()?;
@@ -68,6 +73,7 @@ impl Engine {
             Some(Err(failure)) => return Ok(Some(Err(failure.clone()))),
             Some(Ok(applied)) => Arc::clone(applied),
         };
+        // Step 2.
         let left_out = self.leave_out_values(&without, &applied, &shares)?;
         let costs_left_out: Vec<&LeftOutCost> = left_out.iter().collect();
         let grid = FrequencyGrid::logarithmic(study.settings.band, study.settings.points);
@@ -75,12 +81,14 @@ impl Engine {
             correction: physics,
             level: study.settings.uncertainty.level,
             band: study.settings.band,
+            // Step 3.
             costs: correction_costs(&without, &with, &costs_left_out),
             moved_uncorrected: uncorrected_cost(&with),
             conditions: condition_effects(&without, &with, &left_out),
             omega: Arc::clone(&with.omega),
             couplings_without: without.fitted_couplings().cloned(),
             couplings_with: with.fitted_couplings().cloned(),
+            // Step 4.
             reruns: check_reruns(study, &grid),
             applied,
         }))))

@@ -8,7 +8,9 @@
 //! ```
 //!
 //! z is a parameter's change in plausible standard deviations, the increments are the changes of
-//! the matrices with z.
+//! the matrices with z. A run is a physics model linearised again with one parameter moved, its
+//! base the same model without. A parameter is *named* if its interval excludes zero and it helps
+//! to predict conditions left out (M18.4).
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -93,7 +95,7 @@ struct Application<'a> {
 }
 
 impl Application<'_> {
-    /// Moves the models by the values set by hand.
+    /// Moves the models by the values set by hand (step 1; nothing is fitted).
     fn by_hand(&self) -> PhysicsOutcome {
         let settings = &self.study.settings.physics_parameters;
         let parameters = settings.parameters(&self.study.dataset);
@@ -116,7 +118,7 @@ impl Application<'_> {
         Ok(Arc::new(self.applied(values)))
     }
 
-    /// Moves the models by fitted values:
+    /// Moves the models by fitted values (step 1):
     ///
     /// - all parameters: the values of the diagnosis;
     /// - named parameters: the values of another fit in which the others are held at 0 and values

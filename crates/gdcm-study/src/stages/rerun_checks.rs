@@ -5,6 +5,10 @@
 //! 2  prediction: the base moved by the increments at the values of the rerun
 //! 3  J of prediction and base against the rerun, averaged on and off axis
 //! ```
+//!
+//! A *run* is a physics model linearised again with one parameter moved; the *increments* are the
+//! changes of its matrices with the parameter's value. A *rerun* has several parameters moved,
+//! normally to the values found. J is the mismatch cost (M4).
 
 use gdcm_method::correction::delta::mismatch_table;
 use gdcm_method::physics::run_matching::base_of;
@@ -62,7 +66,9 @@ impl RerunComparison<'_> {
         rerun: &MovedModel,
         changes: &[ParameterChange],
     ) -> Result<RerunCost, RerunRefusal> {
+        // Step 1.
         let base = base_of(self.condition, &rerun.model).ok_or(RerunRefusal::NoBase)?;
+        // Step 2.
         let mut moved = Vec::new();
         let mut z = Vec::new();
         for change in changes {
@@ -77,6 +83,7 @@ impl RerunComparison<'_> {
         let prediction = increments
             .apply(base, &z)
             .map_err(RerunRefusal::Increments)?;
+        // Step 3.
         let cost = RerunCost {
             prediction: self.mean_cost(&Dynamics::StateSpace(prediction), &rerun.model.dynamics),
             base: self.mean_cost(&base.dynamics, &rerun.model.dynamics),

@@ -1,4 +1,7 @@
 //! Derives the bounds on gains and delays (M7).
+//!
+//! The bounds `LB` and `UB` apply to all channels. They are quantiles of what the responses need,
+//! pooled over responses and frequencies: `|H_ref| / |H_sim|` for gains, `Δφ/ω` for delays.
 
 use gdcm_method::fidelity::Mismatch;
 use gdcm_model::dataset::Pair;

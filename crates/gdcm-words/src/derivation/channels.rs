@@ -1,4 +1,8 @@
 //! Derives channel gains and delays, net gains and delays, and objectives (M8, M9, M11).
+//!
+//! Output o and input i have the gains `k_o` and `k_i` and the delays `τ_o` and `τ_i`; a response
+//! has their product and sum, the net gain and net delay, which approximate its delta gain G and
+//! delta delay D (M6). *Held* responses are constrained to them.
 
 use gdcm_method::correction::{Channel, GainObjective, Problem, Quantity, Solution};
 use gdcm_model::dataset::Pair;

@@ -1,4 +1,6 @@
-//! Derives delta gain G and delta delay D (M6).
+//! Derives delta gain G and delta delay D (M6). They are the gain and the delay that would match a
+//! response of the physics representative `H_sim` to that of the identified one, `H_ref`. Each is a
+//! [`Derivation`]: the equation, the same with numbers, and what the result rests on, as texts.
 
 use gdcm_method::correction::delta::GainSource;
 use gdcm_method::fidelity::Mismatch;

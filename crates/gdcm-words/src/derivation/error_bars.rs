@@ -1,5 +1,7 @@
 //! Error bars for explained results, and each result with another model substituted for a
-//! representative (M13).
+//! representative (M13). An error bar has two parts: *trim*, the spread over the other physics
+//! models, and *identification*, the spread over the other identified models or their standard
+//! errors.
 
 use gdcm_method::uncertainty::{Bar, Scalar, VarianceComponent};
 use gdcm_model::dataset::ConditionId;

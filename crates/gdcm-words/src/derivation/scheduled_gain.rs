@@ -1,4 +1,7 @@
 //! Derives a channel's scheduled gain (M11).
+//!
+//! A schedule is fitted to the gains that are optimal in the conditions, `k` or `ln k`: a
+//! polynomial in the scaled airspeed `v`, or a table of means over clusters of equal airspeeds.
 
 use gdcm_method::correction::Channel;
 use gdcm_method::schedule::{Regression, Schedule, ScheduledQuantity};

@@ -1,4 +1,8 @@
 //! Command-table entries for decisions: history, rejections, held responses, models.
+//!
+//! A held (constrained) response has its net gain matched exactly, its delay as far as possible. A
+//! bundle is all physics models, or all identified models, in a condition; its representative is
+//! the medoid, unless the engineer has chosen another model (M5: docs/method.md).
 
 use egui::Key;
 

@@ -1,4 +1,7 @@
 //! Commands about flight records and the models identified from them.
+//!
+//! A part is a time span of a record, used instead of the whole. M-numbers are sections of
+//! docs/identification.md.
 
 use std::path::PathBuf;
 

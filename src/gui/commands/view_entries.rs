@@ -1,4 +1,7 @@
 //! Command-table entries for the window layout: views, panels, steps, themes.
+//!
+//! The dock is the area below the views, with pages of its own. Leads are filters that advance the
+//! phase (M15: docs/lead.md).
 
 use std::sync::Arc;
 

@@ -1,4 +1,9 @@
 //! Recommended next steps, shown with the verdict.
+//!
+//! A held (constrained) response has its net gain matched exactly, its delay as far as possible.
+//! Its gain is matched unless the constraints conflict, that is, unless no gains within their
+//! bounds meet all of them; a remedy is a single change that resolves the conflict. Couplings mix
+//! the inputs and feed outputs back to them (M16: docs/couplings.md).
 
 use gdcm_method::correction::Channel;
 use gdcm_method::correction::remedy::Remedy;
@@ -86,29 +91,36 @@ impl Advice {
     ///    within the band unstable.
     /// 7. Export.
     pub(super) fn new(state: &State, shown: &ConditionAnalysis) -> Self {
+        // Step 1.
         if let Some(channel) = shown.doubts.iter().find_map(|doubt| doubt.turns()) {
             return Self::reverse_channel(state, channel);
         }
+        // Step 2.
         let open = state.open_suggestions(shown);
         if !open.is_empty() {
             return Self::reject_suggested(state, &open);
         }
+        // Step 3.
         if shown.held().marked().next().is_none() {
             return Self::without_note(vec![Step::new(
                 "Hold the on-axis responses",
                 Edit::ConstrainOnAxis,
             )]);
         }
+        // Step 4.
         if !shown.gains.matched {
             return Self::without_note(gain_steps(state, shown));
         }
+        // Step 5.
         let phase = state.study.settings.phase;
         if phase == PhaseCorrection::None || !shown.delays.matched {
             return Self::without_note(phase_steps(state, shown));
         }
+        // Step 6.
         if let Some(advice) = Self::on_couplings(state) {
             return advice;
         }
+        // Step 7.
         let mut steps = vec![Step::new("Export corrections…", export())];
         if phase == PhaseCorrection::Lead {
             steps.push(Step::reasons());

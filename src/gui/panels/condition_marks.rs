@@ -1,4 +1,8 @@
 //! Marks in the conditions list: open tasks, role in the schedule.
+//!
+//! Open tasks are suggested outliers (physics models that the analysis proposes to reject; M5:
+//! docs/method.md) and held responses whose gain or delay is not matched. A condition left out of
+//! the schedule does not enter its fit; a held-out one validates the schedule instead.
 
 use egui::{Rect, RichText, Stroke, Ui};
 

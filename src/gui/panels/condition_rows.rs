@@ -1,5 +1,8 @@
 //! Condition rows: number, mark, airspeed, and cost-map cells. The list and the rail lay them out
 //! differently; `cost_picture.rs` paints some rows as a picture.
+//!
+//! The cost J of a response's mismatch has a magnitude and a phase part (M4: docs/method.md); a
+//! cell shows both. The rail is the narrow form of the left panel.
 
 use egui::{
     Align2, Color32, CornerRadius, Pos2, Rect, Role, Sense, Stroke, StrokeKind, Ui, pos2, vec2,

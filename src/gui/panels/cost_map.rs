@@ -1,6 +1,12 @@
 //! Values of the cost map: magnitude and phase part of J for every constrained response (if there
 //! are many, for every input) in every condition. With couplings, another column has the mean over
 //! the unconstrained responses. `condition_rows.rs` paints the values as shades.
+//!
+//! J is the cost of a response's mismatch (M4: docs/method.md). Couplings mix the inputs and feed
+//! outputs back to them (M16: docs/couplings.md).
+//!
+//! The mapped costs ([`MappedCost`]) are those before the correction, those with each condition's
+//! own correction, or those under the schedule, as the engineer has chosen.
 
 use gdcm_method::fidelity::Cost;
 use gdcm_model::dataset::{ConditionId, Pair};

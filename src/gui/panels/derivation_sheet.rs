@@ -1,6 +1,9 @@
 //! Derivation of a value ("How was this computed?"): its sheet, and the labels and menus that open
 //! it. For G and D, the sheet also shows how constraining or releasing the response would change
 //! the objective.
+//!
+//! G and D are the gain and the delay that would match a response (M6: docs/method.md). The
+//! objective is that of the fit of the channels' gains or delays.
 
 use egui::{CursorIcon, Label, Response, RichText, Sense, Ui, WidgetText};
 

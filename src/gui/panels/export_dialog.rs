@@ -1,6 +1,7 @@
 //! The export dialog: formats; what is exported, and where to; the files with the first lines of
-//! the selected one, above what they omit or approximate. A dry run of the writers supplies the
-//! texts about omissions; this dialog has none of its own.
+//! the selected one, above what they omit or approximate. A dry run of the writers, which computes
+//! every file without writing any, supplies the texts about omissions; this dialog has none of its
+//! own.
 //!
 //! Wide windows have three columns. In narrow windows, formats and options share a column that
 //! scrolls.

@@ -1,5 +1,10 @@
 //! Cell in the constraint matrix: a response's G and D, each above its part of J; the box that
 //! constrains the response; tooltip and menu.
+//!
+//! G and D are the gain and the delay that would match the response (M6: docs/method.md), J is the
+//! cost of its mismatch (M4). A held (constrained) response has its net gain matched exactly, its
+//! delay as far as possible; others are free. The card, below the matrix, lists the values of the
+//! response in focus.
 
 use egui::{
     Align2, Color32, FontId, Key, Rect, Response, RichText, Role, Sense, Stroke, StrokeKind, Ui,

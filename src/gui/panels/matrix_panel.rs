@@ -1,5 +1,8 @@
 //! Constraint matrix: channel names and a cell for each response; outputs are rows, inputs are
 //! columns. `matrix_cell.rs` draws a cell.
+//!
+//! A held (constrained) response has its net gain matched exactly, its delay as far as possible.
+//! Gain constraints conflict if no gains within their bounds meet all of them.
 
 use std::collections::BTreeSet;
 

@@ -1,4 +1,9 @@
 //! Row in a bundle's list: box, star, trim or name, discontinuity ratio or order.
+//!
+//! A bundle is all physics models, or all identified models, in a condition. The star marks its
+//! representative, which stands for it in comparisons: the medoid, the model with the lowest mean
+//! distance to the others, or the model that the engineer has chosen. A physics model whose
+//! discontinuity ratio is high is suggested as an outlier (M5: docs/method.md).
 
 use egui::{Checkbox, Grid, Rect, RichText, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 

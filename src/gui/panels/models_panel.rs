@@ -1,4 +1,8 @@
 //! Bundles in the displayed condition: kept models, representatives, suspected outliers.
+//!
+//! A bundle is all physics models, or all identified models, in a condition; its representative
+//! stands for it in comparisons. Outliers are suggested by their discontinuity ratio (M5:
+//! docs/method.md), and only the engineer rejects models.
 
 use egui::{Align, Label, Layout, Role, ScrollArea, Sense, Ui, UiBuilder, pos2, vec2};
 

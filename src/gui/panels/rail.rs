@@ -1,5 +1,8 @@
 //! Narrow form of the left panel: conditions, and buttons that open the bundles or the records in
 //! sheets.
+//!
+//! A bundle is all physics models, or all identified models, in a condition. A sheet is drawn
+//! beside the rail.
 
 use egui::{Rect, Role, Sense, Stroke, StrokeKind, Ui, vec2};
 

@@ -1,6 +1,11 @@
 //! Reasons for the displayed result: remarks, possible causes of a lag, leads, proof. They are
 //! drawn in the right panel below the verdict, instead of result and matrix, so that no plot to
 //! which they point is covered.
+//!
+//! A remark is a finding about the result, with a remedy if there is one. Leads are filters that
+//! advance the phase (M15: docs/lead.md); couplings mix the inputs and feed outputs back to them
+//! (M16: docs/couplings.md). The proof is a lower bound on the objective of the gains; the gap is
+//! their relative difference.
 
 use egui::{Align, Button, CollapsingHeader, Layout, Rect, RichText, Role, ScrollArea, Ui, vec2};
 
@@ -117,13 +122,16 @@ fn reasons_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<
             return;
         }
     };
+    // Step 1.
     remarks_ui(ui, state, &remarks_shown(state, shown), palette, commands);
     couplings_offer_ui(ui, state, palette, commands);
     suggested_runs_ui(ui, state, palette, commands);
+    // Step 2.
     if !shown.delays.matched || shown.has_leads() {
         causes_ui(ui, state, shown, palette, commands);
     }
     lead_ui(ui, state, shown, palette);
+    // Step 3.
     section_ui(ui, "Proof");
     proof_ui(ui, shown, state.is_proving(shown), palette);
     objective_ui(ui, shown, palette, commands);

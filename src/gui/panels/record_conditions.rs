@@ -1,4 +1,7 @@
 //! Condition list while the view *Records* is in front: record counts, fit costs and fit state.
+//!
+//! χ²/dof is the cost of a fit per degree of freedom; it is near 1 if the residual is noise (M14:
+//! docs/identification.md). Held-out records are not fitted, but test the model.
 
 use egui::{Color32, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 

@@ -1,4 +1,7 @@
 //! Card about the focused response: required corrections, remaining errors, error bars.
+//!
+//! G and D are the gain and the delay that would match the response (M6: docs/method.md), J is the
+//! cost of its mismatch (M4).
 
 use egui::{Grid, Rect, RichText, Sense, Stroke, StrokeKind, Ui, vec2};
 

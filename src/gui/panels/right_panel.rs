@@ -1,5 +1,8 @@
 //! Right side of the window, from top to bottom: verdict, result, constraint matrix, focused
 //! response's card, settings line, export.
+//!
+//! The reasons explain the result (`reasons.rs`). The card lists the required and the remaining
+//! corrections of the response in focus.
 
 use egui::{Align2, Button, Frame, Margin, Panel, Rect, RichText, Role, Sense, Ui, pos2, vec2};
 

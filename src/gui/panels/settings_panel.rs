@@ -1,5 +1,9 @@
 //! Settings beside live results: a control for each row in the settings table. The panel replaces
 //! the model list, so that verdict, result, matrix and plots keep their places.
+//!
+//! A setting's control says where it is drawn ([`Place`]) and whether it has an effect in the
+//! study. α is the weight of the output gains' deviation from 1 in the objective (M8:
+//! docs/method.md).
 
 use egui::{Button, Grid, Label, Rect, Role, ScrollArea, Sense, Ui, UiBuilder, pos2, vec2};
 

@@ -1,5 +1,7 @@
 //! Status bar at the foot of the window: computation status, description for the element under the
 //! pointer, remarks on the data.
+//!
+//! The live analysis is that with the current settings; all other computations are background work.
 
 use egui::{Align, Button, Color32, Label, Layout, RichText, Ui};
 

@@ -1,5 +1,9 @@
 //! Trade-off plot below the slider for α: the output gains' deviation from 1, and J, over α. The
 //! horizontal axis is the slider's.
+//!
+//! α is the weight of the output gains' deviation from 1 in the objective of the gains (M8:
+//! docs/method.md); J is the cost of the mismatch (M4). A larger α keeps the output gains closer to
+//! 1, and the plot shows what that costs in J.
 
 use egui::{Align2, FontId, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 

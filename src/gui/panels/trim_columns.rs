@@ -1,4 +1,7 @@
 //! Trim-offset columns in the list of physics models, and the same offsets in words.
+//!
+//! A trim offset is the difference of a perturbed model's trim from the nominal trim, in one
+//! coordinate such as the airspeed.
 
 use std::collections::BTreeMap;
 

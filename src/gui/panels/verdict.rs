@@ -1,6 +1,10 @@
 //! Verdict: whether the corrected model's constrained responses are matched, and the next step if
 //! they are not. `gdcm_words::verdict` and `verdict_caution.rs` form its texts, `advice.rs` chooses
 //! the steps, `verdict_view.rs` draws it.
+//!
+//! A held (constrained) response has its net gain matched exactly, its delay as far as possible.
+//! Couplings mix the inputs and feed outputs back to them, and may move poles (M16:
+//! docs/couplings.md).
 
 use gdcm_model::dataset::ConditionId;
 use gdcm_study::ConditionAnalysis;

@@ -1,4 +1,8 @@
 //! Short caution beside the verdict, to be read before the result is used.
+//!
+//! Couplings mix the inputs and feed outputs back to them (M16: docs/couplings.md). Leads are
+//! filters that advance the phase, at the price of gain above the band (M15: docs/lead.md). J is
+//! the cost of the mismatch (M4, M12: docs/method.md).
 
 use gdcm_method::correction::LeadPrice;
 use gdcm_method::schedule::ScheduleCaution;
@@ -20,12 +24,14 @@ use crate::message::Message;
 /// 4. there are other cautions about the couplings;
 /// 5. the schedule costs more than the condition's own correction.
 pub(super) fn caution(state: &State, shown: &ConditionAnalysis) -> Option<Message> {
+    // Step 1.
     let couplings = coupling_caution(state);
     if let Some(caution) = &couplings
         && caution.kind == RemarkKind::Trouble
     {
         return Some(caution.message.clone());
     }
+    // Step 2.
     if state
         .analysis()
         .is_some_and(|analysis| analysis.asked_physics().is_err())
@@ -33,6 +39,7 @@ pub(super) fn caution(state: &State, shown: &ConditionAnalysis) -> Option<Messag
         let text = "Physics parameters not applied";
         return Some(Message::new("no-physics", text));
     }
+    // Steps 3 to 5.
     lead_caution(shown)
         .or(couplings.map(|caution| caution.message))
         .or_else(|| schedule_caution(state, shown))

@@ -279,10 +279,12 @@ impl<'a> StepsLine<'a> {
         let mut left = line.left();
         let mut right = line.right();
         let mut reasons_place = line;
+        // Step 1.
         if let Some(step) = &self.reasons {
             reasons_place.min.x = right - text_width(ui, &step.label, body());
             right = reasons_place.left() - GAP;
         }
+        // Step 2.
         if let Some(step) = self.primary {
             let width = text_width(ui, &step.label, medium(BODY_SIZE)) + 24.0;
             let place = Rect::from_min_size(pos2(left, line.top()), vec2(width, STEPS));
@@ -304,12 +306,14 @@ impl<'a> StepsLine<'a> {
             link_ui(ui, place, step, palette, commands);
             left = place.right() + GAP;
         }
+        // Step 3.
         let rest = line.with_min_x(left).with_max_x(right);
         if let Some(caution) = self.caution {
             caution_ui(ui, rest, caution, palette);
         } else if !self.note.is_empty() {
             note_ui(ui, rest, self.note, palette);
         }
+        // Step 4.
         // Drawn last, so that the keyboard reaches the primary step first.
         if let Some(step) = &self.reasons {
             link_ui(ui, reasons_place, step, palette, commands);

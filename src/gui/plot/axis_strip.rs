@@ -1,5 +1,9 @@
 //! Interactive axes: the wheel zooms, dragging pans, a double click or a secondary click opens the
 //! form for the axis limits.
+//!
+//! A strip is the area of an axis beside a pane's frame that reacts to the pointer: values at the
+//! left, frequencies below the frame. Where the axis is not drawn, as below the magnitudes, the
+//! strip has no extent.
 
 use egui::{
     CursorIcon, Popup, PopupCloseBehavior, Rect, Response, Role, Sense, Ui, Vec2, WidgetInfo, vec2,

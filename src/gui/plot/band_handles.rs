@@ -1,4 +1,13 @@
-//! Draggable band ends.
+//! Draggable ends of the comparison band, the frequencies over which models are compared. An end is
+//! a vertical line over each pane.
+//!
+//! ```text
+//! 1. clamp the pointer to the frame, and convert its position to a frequency
+//! 2. round it to three significant digits in the displayed unit (`FrequencyUnit::rounded_omega`),
+//!    so that the displayed number is exactly the value
+//! 3. limit it by the other end (`LEAST_RATIO`)
+//! 4. report the new band as an event; the caller changes the band, and the end moves
+//! ```
 
 use egui::{CursorIcon, Rect, Response, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
 
@@ -79,9 +88,12 @@ pub(super) fn band_handles_ui(ui: &Ui, pane: PaneScene<'_>, view: &BodeView) -> 
         if response.dragged()
             && let Some(pointer) = response.interact_pointer_pos()
         {
+            // Step 1.
             let x = pointer.x.clamp(frame.left(), frame.right());
             let at = transform.value_from_position(pos2(x, frame.center().y));
+            // Step 2.
             let omega = scene.unit.rounded_omega(10f64.powf(at.x));
+            // Steps 3 and 4.
             let (min, max) = end.moved(scene.band, omega);
             change = Some(BodeEvent::BandDragged { min, max });
         } else if response.drag_stopped() {

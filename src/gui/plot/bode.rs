@@ -1,5 +1,9 @@
 //! Bode plot for one response: magnitude above phase of every model in a condition, or the ratio
 //! and phase difference between the identified and the other models.
+//!
+//! A scene ([`BodeScene`]) describes what is drawn, a view ([`BodeView`]) is the plot's state
+//! between frames, and events ([`BodeEvent`]) report the engineer's actions. A pane ([`Pane`]) is
+//! the upper or the lower of the two plots.
 
 use std::borrow::Cow;
 
@@ -44,6 +48,7 @@ pub fn bode_ui(
 ) -> Vec<BodeEvent> {
     let rect = ui.available_rect_before_wrap();
     let mut events = Vec::new();
+    // Step 1.
     if rect.width() < LEAST_SIZE.x || rect.height() < LEAST_SIZE.y {
         return events;
     }
@@ -58,11 +63,13 @@ pub fn bode_ui(
         view.pointed_omega = None;
         return events;
     }
+    // Step 2.
     let curves = visible_curves(scene.curves);
     let visible = BodeScene {
         curves: &curves,
         ..*scene
     };
+    // Step 3.
     // While a band end is dragged, the view must not move under the pointer.
     if scene.omega_range.is_none() && !ui.input(|input| input.pointer.any_down()) {
         view.follow_curves(scene.curves);
@@ -76,6 +83,7 @@ pub fn bode_ui(
         AxisUpdate::Complete
     };
     view.follow_values(scene, &visible, update);
+    // Step 4.
     let builder = UiBuilder::new().id_salt(scene.quantity.salt());
     ui.scope_builder(builder.max_rect(rect), |ui| {
         use_frame_colors(ui, palette);
@@ -195,6 +203,7 @@ impl Panes<'_> {
     fn ui(&self, ui: &mut Ui, view: &mut BodeView) -> PanesResponse {
         let scene = self.scene;
         let mut events = Vec::new();
+        // Step 1.
         let pointing = Pointing::find(ui, scene, view);
         let hit = pointing.and_then(|pointing| pointing.hit);
         let pointed = hit.map(|hit| scene.curves[hit.curve].id.clone());
@@ -209,6 +218,7 @@ impl Panes<'_> {
             _ => CursorIcon::Crosshair,
         };
         let mut has_focus = false;
+        // Step 2.
         for pane in PANES {
             let pane_scene = PaneScene {
                 pane,
@@ -231,6 +241,7 @@ impl Panes<'_> {
             events.extend(menu_ui(&response, scene, view, self.palette));
             response.on_hover_cursor(icon);
         }
+        // Step 3.
         if let Some(selection) = view.selection.take()
             && let Some(transform) = view.transform(selection.pane)
         {

@@ -1,4 +1,7 @@
 //! Bode axes: names and units, and the limits typed by the engineer.
+//!
+//! A place on an axis is the coordinate in which curves are drawn: `log10 omega`, or the value, in
+//! decibels even if ratios are displayed. Typed limits are in the displayed unit.
 
 use gdcm_model::number_format::compact;
 use gdcm_plot::figure::Range;

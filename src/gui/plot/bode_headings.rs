@@ -7,7 +7,9 @@
 //! below         frequency unit at the right; coherence strip
 //! ```
 //!
-//! The price is the magnitude that the leads add where the curves end (`InvalidRegion`).
+//! J is the cost of the response's mismatch, before and after the correction (M4: docs/method.md).
+//! Leads are filters that advance the phase (M15: docs/lead.md); their price is the magnitude that
+//! they add where the curves end (`InvalidRegion`). The last text is the verdict on the correction.
 
 use egui::{Align2, Rect, Ui, pos2};
 use egui_plot::{PlotPoint, PlotTransform};

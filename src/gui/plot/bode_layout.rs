@@ -1,4 +1,7 @@
 //! Bode layout: places for the panes, and for the texts and strips around them.
+//!
+//! A pane is the magnitude or the phase plot. The read-out lists the values at the cursor; the
+//! coherence strip shows the coherence of measured responses.
 
 use egui::{Rect, pos2, vec2};
 
@@ -52,7 +55,9 @@ impl BodeLayout {
     /// 4. the remaining height: a heading above each pane, the frequency axis below the phase, and
     ///    the panes in a fixed proportion.
     pub(super) fn new(area: Rect, scene: &BodeScene<'_>) -> Self {
+        // Step 1.
         let mut inner = area.with_max_x(area.right() - right_margin(scene));
+        // Step 2.
         let mut coherence = None;
         if !scene.coherence.is_empty() && inner.height() >= LEAST_WITH_COHERENCE {
             let strip = inner
@@ -61,6 +66,7 @@ impl BodeLayout {
             inner = inner.with_max_y(strip.top() - GAP);
             coherence = Some(strip);
         }
+        // Step 3.
         // A reserved read-out has its room even without values, so that nothing moves when the
         // pointer arrives.
         let has_readout = (scene.readout.is_some() || scene.reserves_readout)
@@ -70,6 +76,7 @@ impl BodeLayout {
         } else {
             GAP
         };
+        // Step 4.
         let panes_height = inner.height() - 2.0 * HEADING - between - TICKS_HEIGHT;
         let magnitude = Rect::from_min_size(
             pos2(inner.left(), inner.top() + HEADING),

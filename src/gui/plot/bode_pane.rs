@@ -1,4 +1,7 @@
 //! Bode pane: layers from bottom to top, and gestures.
+//!
+//! A pane is the magnitude or the phase plot; `BodeView` keeps its visible ranges and what was last
+//! drawn. The comparison band is the range of frequencies over which models are compared.
 
 use egui::{Color32, PointerButton, Rect, Response, Stroke, Ui, vec2};
 use egui_plot::{PlotBounds, PlotTransform, PlotUi};
@@ -58,6 +61,7 @@ pub(super) fn pane_ui(ui: &mut Ui, pane: PaneScene<'_>, view: &mut BodeView) -> 
         scene.pair_title,
         counted(scene.curves.len(), "curve")
     );
+    // Step 1.
     let values = scene.quantity.unit(pane.pane).ticks();
     let panel = PanelPainter {
         id: ui.make_persistent_id(&name),
@@ -84,10 +88,12 @@ pub(super) fn pane_ui(ui: &mut Ui, pane: PaneScene<'_>, view: &mut BodeView) -> 
     let shown = panel.show(ui, move |plot| pane.add_layers(plot, bounds, cached));
     drawn.transform = Some(shown.transform);
     view.drawn[pane.pane as usize] = drawn;
+    // Step 2.
     handle_drag(ui, pane, &shown.response, view);
     zoom_by_scrolling(pane.pane, &shown.response, view);
     handle_keys(ui, pane.pane, &shown.response, view);
     axis_strips_ui(ui, pane, view);
+    // Step 3.
     let lines = PaneLines {
         lines: scene.rules,
         pane: pane.pane,
@@ -162,10 +168,12 @@ impl<'a> PaneScene<'a> {
     fn add_layers(self, plot: &mut PlotUi<'a>, bounds: PlotBounds, drawn: &'a mut DrawnPane) {
         let scene = self.scene;
         plot.set_plot_bounds(bounds);
+        // Step 1.
         self.shade_band(plot);
         if scene.invalid.is_some() {
             add_hatching(plot, scene.band.1, self.palette);
         }
+        // Step 2; the curves are thinned first.
         // The panel's own transform still has the bounds of the last frame.
         let transform = PlotTransform::new(*plot.transform().frame(), bounds, false);
         let visible = VisiblePart::new(&transform, plot.ctx().pixels_per_point(), TOLERANCE);
@@ -183,6 +191,7 @@ impl<'a> PaneScene<'a> {
         if let Some(optima) = scene.optima {
             self.add_band(plot, optima, &bounds, self.palette.corrected);
         }
+        // Step 3.
         let image = drawn.image_of_many(
             plot.ctx(),
             scene.curves,
@@ -191,6 +200,7 @@ impl<'a> PaneScene<'a> {
             self.palette,
         );
         self.add_curves(plot, &drawn.curves, image);
+        // Steps 4 and 5.
         self.veil_outside(plot);
         self.add_cursors(plot);
     }

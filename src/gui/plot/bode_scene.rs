@@ -1,5 +1,10 @@
 //! Content for a Bode plot of one response: magnitude and phase of every model in a condition, or
 //! the ratio and phase difference between the identified and the other models.
+//!
+//! A role ([`Role`]) is the meaning of a curve, such as nominal, identified or corrected model; it
+//! sets the style. The band is the range of frequencies over which models are compared, and J the
+//! cost of their mismatch there (M4: docs/method.md). Leads are filters that advance the phase
+//! (M15: docs/lead.md).
 
 use std::collections::BTreeSet;
 
@@ -49,7 +54,8 @@ pub struct BodeScene<'a> {
     /// Remaining phase error: the area between the corrected and the identified curve, within the
     /// band; nothing in the magnitude pane.
     pub missing: Option<&'a BodeBand>,
-    /// Range between the smallest and the largest error at the conditions' optima.
+    /// Range between the smallest and the largest error at the conditions' optima, that is, of the
+    /// models with their condition's own correction.
     pub optima: Option<&'a BodeBand>,
     /// Names in the right margin, each beside the ends of its curves.
     pub end_names: &'a [EndName],

@@ -188,14 +188,17 @@ impl BodeView {
         let band = fitted_band(whole);
         for pane in PANES {
             let index = pane as usize;
+            // Step 1.
             let fitted = fitted_values(whole.curves, pane, band);
             if fitted.is_none() || fitted == self.followed_values[index] {
                 continue;
             }
+            // Step 2.
             let is_first = self.followed_values[index].is_none();
             if update == AxisUpdate::Complete {
                 self.followed_values[index] = fitted;
             }
+            // Steps 3 and 4.
             if let Some(values) = fitted_values(visible.curves, pane, band)
                 && !is_first
             {

@@ -37,10 +37,11 @@ pub struct ChartResponse {
 ///
 /// 1. place the frame with its axes below the title line, left of the right margin;
 /// 2. draw the layers, with lines thinned for the range visible in the last frame, and zoom;
-/// 3. repaint if the visible range has changed since;
+/// 3. repaint if the visible range has changed since, so that the lines are thinned for it;
 /// 4. paint the title and the notes, unless the chart has no title line.
 pub fn chart_ui(ui: &mut Ui, rect: Rect, chart: &Chart<'_>, palette: &Palette) -> ChartResponse {
     let layout = chart.layout;
+    // Step 1.
     let panel = PanelPainter {
         id: ui.make_persistent_id((chart.title, chart.group)),
         rect: Rect::from_min_max(
@@ -60,17 +61,20 @@ pub fn chart_ui(ui: &mut Ui, rect: Rect, chart: &Chart<'_>, palette: &Palette) -
         is_transparent: false,
         palette,
     };
+    // Step 2.
     let shown = panel.show(ui, |plot| {
         add_layers(plot, chart, palette);
         zoom_by_scrolling(plot, chart);
         visible_ends(plot)
     });
+    // Step 3.
     let [across, _] = ranges_of(shown.transform.bounds());
     let thinned_for = shown.inner;
     let is_whole = thinned_for[0] == f64::NEG_INFINITY;
     if !is_whole && thinned_for != [across.min, across.max] {
         ui.request_repaint();
     }
+    // Step 4.
     if layout.title_height > 0.0 {
         let line = rect.with_max_y(rect.top() + layout.title_height);
         let frame = *shown.transform.frame();

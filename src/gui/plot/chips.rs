@@ -1,5 +1,8 @@
 //! Chips above a plot, which serve as its legend: a switch for each role present, and the plot's
 //! current restrictions.
+//!
+//! A role ([`Role`]) is the meaning of curves, such as nominal or corrected model. A restriction
+//! limits what the plot shows: "Only V+10kt ×" while one model is isolated.
 
 use std::collections::BTreeSet;
 
@@ -167,6 +170,7 @@ impl Chips<'_> {
         }
         let mut row = ChipRow::new(area, self.sample());
         let mut event = None;
+        // Step 1.
         let switches = self.switches();
         let fitting_count = self.fitting_count(ui, &switches, area.width());
         for switch in &switches[..fitting_count] {
@@ -184,10 +188,12 @@ impl Chips<'_> {
                 event = Some(switch.event(ui));
             }
         }
+        // Step 2.
         let rest = &switches[fitting_count..];
         if !rest.is_empty() {
             event = self.rest_ui(ui, &mut row, rest, palette).or(event);
         }
+        // Step 3.
         for (index, chip) in self.states.iter().enumerate() {
             let face = ChipFace {
                 text: &chip.text,

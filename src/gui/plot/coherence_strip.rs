@@ -1,4 +1,7 @@
 //! Coherence strip below the panes, for measured responses.
+//!
+//! The coherence γ² lies between 0 and 1. A dashed line marks the minimum at which a frequency
+//! counts (`BodeScene::least_coherence`).
 
 use egui::{Align2, Id, Painter, Pos2, Rect, Sense, Shape, Stroke, StrokeKind, Ui, pos2};
 use egui_plot::{PlotPoint, PlotTransform};

@@ -54,7 +54,8 @@ impl CurveLooks<'_> {
         }
     }
 
-    /// Sorts curves from bottom to top, the most important last.
+    /// Sorts curves from bottom to top: by the rank of their role (`Role::layer`), above these the
+    /// raised role, and on top the emphasized curves.
     pub(super) fn sort(&self, curves: &mut [(usize, &BodeCurve)]) {
         curves.sort_by_key(|(_, curve)| {
             (

@@ -1,4 +1,8 @@
 //! Context menus: on a curve, and on the empty ground between curves.
+//!
+//! A bundle is all physics models, or all identified models, in a condition. Its representative
+//! stands for it in comparisons: the medoid, unless the engineer has chosen another model (M5:
+//! docs/method.md). The subject of a menu is the curve under the click, or the frequency there.
 
 use egui::{
     Button, Key, Popup, PopupCloseBehavior, Response, RichText, Role as WidgetRole, TextEdit, Ui,

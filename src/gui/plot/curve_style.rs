@@ -1,4 +1,7 @@
 //! Colour, width and pattern with which curves are drawn.
+//!
+//! Roles, patterns and colours by meaning (`Hue`) are shared with printed figures; here they get
+//! the colours of the theme and widths on the screen.
 
 use egui::{Color32, Pos2, Shape, Stroke};
 

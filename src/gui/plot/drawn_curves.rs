@@ -76,9 +76,11 @@ impl DrawnCurves {
         visible: VisiblePart,
         palette: &Palette,
     ) {
+        // Step 1.
         if self.visible == Some(visible) && self.are_drawn_from(curves, pane, palette) {
             return;
         }
+        // Step 2.
         let mut reusable: Vec<Option<DrawnCurve>> = Vec::new();
         if self.visible == Some(visible) {
             reusable.extend(self.curves.drain(..).map(Some));
@@ -94,6 +96,7 @@ impl DrawnCurves {
             drawn.push(match place.and_then(|place| reusable[place].take()) {
                 Some(unchanged) => unchanged,
                 None => {
+                    // Step 3.
                     let points = curve.points_on(&mut axis, pane);
                     let runs = runs_in_view(points, &visible.bounds, margin);
                     self.made += 1;

@@ -1,4 +1,8 @@
 //! A figure's marks on the screen: as on paper, and emphasized under the pointer.
+//!
+//! A mark ([`Mark`]) is a line, dots, bars or another element of a panel; a dot's id ([`MarkId`])
+//! names the object that it represents. The shapes are those of the printed figure, which
+//! [`Canvas`] enlarges.
 
 use egui::{Color32, Painter, Pos2, Rect, Stroke, Ui};
 use egui_plot::{PlotPoint, PlotTransform};
@@ -99,7 +103,9 @@ impl MarkScene<'_> {
         let frame = *self.transform.frame();
         let clip = frame.expand(RING).intersect(ui.clip_rect());
         let painter = ui.painter().with_clip_rect(clip);
+        // Step 1.
         self.paint_columns(&painter);
+        // Step 2.
         let canvas = Canvas {
             painter: &painter,
             origin: frame.min,
@@ -120,11 +126,13 @@ impl MarkScene<'_> {
         } else {
             canvas.paint(drawn.shapes(self.panel, area(frame), ranges));
         }
+        // Step 3.
         for mark in &self.panel.marks {
             if let Mark::Dots(dots) = mark {
                 self.paint_emphasis(&canvas, dots);
             }
         }
+        // Step 4.
         if let Some(at) = self.pointed_at
             && self.columns.is_empty()
         {

@@ -1,5 +1,9 @@
 //! A figure's panel: title, axes, marks, and the mark under the pointer.
 //!
+//! A figure has plots side by side; a plot has a title and one or more panels below one another; a
+//! panel has two axes and marks (lines, bars, dots …). Its *whole ranges* fit its marks. The dots
+//! have ids, which name the objects that they represent.
+//!
 //! `figure_view` places the panels. Three fields of [`FigureScene`] change what is drawn here:
 //!
 //! ```text
@@ -8,8 +12,8 @@
 //!             (horizontal_axis), only its unit beside the last plot (title_ui)
 //! is_stacked  the panels of a plot share the horizontal axis: drawn below the last panel only
 //!             (horizontal_axis); wider value axes, so that the frames align (vertical_axis)
-//! columns     not empty: the named x positions 0, 1, … are what the pointer finds, instead of
-//!             dots (pointed_mark)
+//! columns     not empty: the pointer selects named columns (x = 0, 1, …) instead of dots
+//!             (pointed_mark)
 //! ```
 
 use egui::{Align2, Id, Rect, Response, Sense, Stroke, Ui, Vec2, WidgetInfo, pos2, vec2};
@@ -113,13 +117,16 @@ impl PlacedPanel<'_> {
     /// 6. zoom and pan: the ranges for the next frame; a double click beside all marks shows the
     ///    whole ranges again.
     pub(super) fn ui(&self, ui: &mut Ui, view: &mut PanelView) -> PlacedResponse {
+        // Step 1.
         let panel = self.panel();
         let has_values = self.has_values(ui);
         let rect = self.frame_with_axes(has_values);
         let bounds = bounds_of(view.ranges.unwrap_or_else(|| whole_ranges(panel)));
+        // Step 2: `across` is the horizontal, `values` the vertical axis.
         let across = self.horizontal_axis(ui);
         let frame_height = rect.height() - across.thickness;
         let values = self.vertical_axis(ui, frame_height, has_values);
+        // Step 3.
         let painter = PanelPainter {
             id: self.id,
             rect,
@@ -141,7 +148,9 @@ impl PlacedPanel<'_> {
         if self.number == 0 {
             self.title_ui(ui, *transform.frame());
         }
+        // Step 4.
         let pointed = self.pointed_mark(&response, &transform);
+        // Step 5.
         let marks = MarkScene {
             panel,
             transform,
@@ -154,8 +163,10 @@ impl PlacedPanel<'_> {
         };
         marks.paint(ui, &mut view.marks);
         self.describe_dots(ui, &transform);
+        // Step 6.
         if self.scene.zooms {
-            // Without a gesture the ranges stay as they are: whole ranges follow the marks.
+            // `view.ranges` stays `None` until a gesture changes the ranges, so that the whole
+            // ranges follow changed marks.
             if let Some(ranges) = navigated_ranges(panel, &response, &transform)
                 && ranges != ranges_of(&bounds)
             {
@@ -179,6 +190,7 @@ impl PlacedPanel<'_> {
         } else {
             // Resets the animation, so that the next bars start from 0.
             ui.ctx().animate_bool_with_time(animation, false, 0.0);
+            // Unused, because there are no bars.
             1.0
         }
     }
@@ -203,6 +215,7 @@ impl PlacedPanel<'_> {
     /// Returns whether the vertical axis has tick labels: in a compact figure, only in the first
     /// column, whose plots begin at the left end of `ui`.
     fn has_values(&self, ui: &Ui) -> bool {
+        // The panel knows its place, but not the number of columns of plots.
         let is_first_column = self.rect.left() - ui.max_rect().left() < 0.5 * self.rect.width();
         !self.scene.is_compact || is_first_column
     }

@@ -1,4 +1,7 @@
 //! A figure with its interaction on the screen, and its events.
+//!
+//! A mark's id ([`MarkId`]) is the identity of the object that a dot or a column represents. Axis
+//! coordinates are the values or, on a logarithmic horizontal axis, their logarithms.
 
 use egui::{Modifiers, Vec2};
 
@@ -62,7 +65,8 @@ pub struct FigureScene<'a> {
     /// Plot in focus, which has a bar in the accent colour.
     pub accented: Option<usize>,
     pub words: &'a dyn FigureWords,
-    /// Index that this figure's first plot has in descriptions and events.
+    /// Index that this figure's first plot has in descriptions and events; not 0 if a view shows
+    /// its plots in several figures.
     pub first_plot: usize,
 }
 

@@ -1,4 +1,7 @@
 //! Figure on the screen: its plots side by side, the mark under the pointer, and clicks.
+//!
+//! A figure has plots; a plot has a title and one or more panels below one another; a panel, drawn
+//! by `figure_panel`, has two axes and marks. The whole ranges of a panel fit its marks.
 
 use std::collections::BTreeMap;
 
@@ -217,6 +220,7 @@ pub fn figure_within_ui(
 ) -> Vec<FigureEvent> {
     let count = scene.figure.plots.len();
     let mut events = Vec::new();
+    // Step 1.
     if count == 0 {
         message_ui(ui, rect, scene.message, palette);
         return events;
@@ -224,6 +228,7 @@ pub fn figure_within_ui(
     view.plots.resize_with(count, PlotView::default);
     ui.scope_builder(UiBuilder::new().id_salt(scene.name).max_rect(rect), |ui| {
         use_frame_colors(ui, palette);
+        // Step 2.
         let mut inner = rect;
         if scene.is_compact {
             inner.min.x += VALUE_AXIS_WIDTH;
@@ -232,12 +237,14 @@ pub fn figure_within_ui(
             inner.min.x += LABEL_STRIP;
             upright_label_ui(ui, rect, label, palette);
         }
+        // Step 3.
         let hovered = view.hovered.take();
         let painter = FigurePainter {
             scene,
             emphasized: hovered.as_ref().or(scene.highlighted.as_ref()),
             palette,
         };
+        // Step 4.
         let area = TiledArea {
             name: "panels",
             rect: inner,
@@ -248,6 +255,7 @@ pub fn figure_within_ui(
             let shown = painter.plot_ui(ui, rect, plot, &mut view.plots[plot]);
             view.report(scene, plot, shown, &mut events);
         });
+        // Step 5.
         if view.hovered != hovered {
             ui.ctx().request_repaint();
         }

@@ -1,5 +1,8 @@
 //! Frequencies above the band at which the corrected model is invalid: hatching, a strip with a
 //! text, and the magnitude added by the leads.
+//!
+//! Only a correction with leads, filters that advance the phase (M15: docs/lead.md), has such
+//! frequencies; it is valid up to the band's upper end.
 
 use egui::{Align2, FontId, Rect, Shape, Stroke, Ui, pos2, vec2};
 use egui_plot::{PlotPoint, PlotTransform, PlotUi};

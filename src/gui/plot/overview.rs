@@ -1,5 +1,7 @@
 //! Every response at once: a table of small Bode plots with outputs in rows and inputs in columns.
 //! The axes are labelled at the left of the rows and below the columns.
+//!
+//! J, which a cell's note may give, is the cost of the response's mismatch (M4: docs/method.md).
 
 use egui::{Align2, Pos2, Rect, Ui, UiBuilder, Vec2, pos2, vec2};
 

@@ -1,4 +1,6 @@
 //! Overview cell: a response's small Bode plot, and its events.
+//!
+//! A constrained response, whose gain is matched exactly, has a tinted background.
 
 use egui::{
     CursorIcon, Painter, Rect, Response, RichText, Sense, Stroke, Ui, Vec2, WidgetInfo, vec2,
@@ -158,6 +160,7 @@ impl PlacedCell<'_> {
     ///    into focus;
     /// 3. secondary click: opens the menu on the curve, or closes it on empty ground.
     fn events(&self, response: &Response, view: &mut OverviewView) -> Vec<OverviewEvent> {
+        // Step 1.
         let pointer = response.hover_pos().or(response.interact_pointer_pos());
         let curve = pointer.and_then(|pointer| view.curve_at(self.cell, pointer));
         let pointed = curve.map(|curve| curve.id.clone());
@@ -172,6 +175,7 @@ impl PlacedCell<'_> {
                 events.push(OverviewEvent::PointedAt(self.omega_at(pointer.x)));
             }
         }
+        // Step 2.
         if response.clicked() {
             let has_alt = response.ctx.input(|input| input.modifiers.alt);
             events.push(match &pointed {
@@ -179,6 +183,7 @@ impl PlacedCell<'_> {
                 _ => OverviewEvent::PairClicked(self.cell.pair),
             });
         }
+        // Step 3.
         if response.secondary_clicked() {
             let pair = self.cell.pair;
             view.menu_curve = pointed.map(|curve| MenuCurve { pair, curve });

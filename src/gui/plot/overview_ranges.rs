@@ -19,7 +19,8 @@ const MARGIN: f64 = 0.04;
 /// Minimum visible height \[dB\] or \[deg\].
 const LEAST_HEIGHT: f64 = 1.0;
 
-/// Visible ranges, kept between frames so that the axes follow new curves with hysteresis.
+/// Visible ranges, kept between frames so that the axes follow new curves with hysteresis
+/// ([`changed_range`]).
 #[derive(Clone, Debug, Default)]
 pub(super) struct SharedRanges {
     /// Values in a row, by output and pane.

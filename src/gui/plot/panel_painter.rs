@@ -19,7 +19,9 @@ pub(super) struct PanelPainter<'a> {
     pub(super) rect: Rect,
     /// Accessible name.
     pub(super) name: &'a str,
+    /// Horizontal axis.
     pub(super) across: PanelAxis,
+    /// Vertical axis.
     pub(super) values: PanelAxis,
     pub(super) gestures: Gestures,
     /// Whether the background below already has the right colour: without a graphics processor,

@@ -1,4 +1,4 @@
-//! Quantities and units in the two stacked panes.
+//! Quantities and units in the two stacked panes. M4 and M6 are sections of docs/method.md.
 
 pub use gdcm_plot::figure::axis::{MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
 
@@ -16,8 +16,8 @@ pub enum BodeQuantity<'a> {
         ratio_unit: &'a str,
         subject: ResponseSubject,
     },
-    /// Ratio and phase difference that enter J: `20 log10(|H_ref| / |H_sim|)` above, phase
-    /// difference between `H_ref` and `H_sim` below (M6). `H_ref` is the identified response,
+    /// Ratio and phase difference that enter the cost J (M4): `20 log10(|H_ref| / |H_sim|)` above,
+    /// phase difference between `H_ref` and `H_sim` below (M6). `H_ref` is the identified response,
     /// `H_sim` a physics model's response.
     Error { phase: PhaseErrorUnit },
     /// Scheduled minus identified response in every condition.

@@ -1,5 +1,7 @@
 //! Reference lines across a Bode pane (targets, bounds, quantiles and envelopes): painting,
 //! picking, labels.
+//!
+//! A line's `Level` gives its value at every frequency; a note continues its label.
 
 use egui::{Pos2, Ui};
 use egui_plot::{PlotPoint, PlotTransform};

@@ -51,15 +51,18 @@ pub(super) fn steady_range(shown: Range, wanted: Range, update: AxisUpdate) -> R
 /// 3. results complete: `wanted` if it uses less than [`LEAST_USE`] of `grown` (the axis shrinks,
 ///    or the data have moved away); else `grown` if the data exceed the axis; else no change.
 pub(super) fn changed_range(shown: Range, wanted: Range, update: AxisUpdate) -> Option<Range> {
+    // Step 1.
     if update == AxisUpdate::Pending {
         return None;
     }
     let spare = OVERSHOOT * shown.width();
     let exceeds = wanted.min < shown.min - spare || wanted.max > shown.max + spare;
     let grown = shown.union(wanted);
+    // Step 2.
     if update == AxisUpdate::Dragging {
         return if exceeds { Some(grown) } else { None };
     }
+    // Step 3.
     if wanted.width() < LEAST_USE * grown.width() {
         Some(wanted)
     } else if exceeds {
@@ -76,10 +79,12 @@ pub(super) fn changed_range(shown: Range, wanted: Range, update: AxisUpdate) -> 
 /// 2. from the largest step downwards, extend the range until it contains enough multiples;
 /// 3. stop at the first step for which it becomes at most [`MOST_EXTENSION`] times as wide.
 pub(super) fn labelled_range(range: Range, scale: Scale) -> Range {
+    // Step 1.
     let rounded = rounded_out(range);
     if scale == Scale::Logarithmic {
         return rounded;
     }
+    // Steps 2 and 3.
     let mut step = step_above(rounded.width());
     loop {
         let labelled = with_labels(rounded, step);

@@ -1,4 +1,7 @@
 //! Thinning: only visible points are drawn, and no details finer than a pixel.
+//!
+//! [`thinned`] omits the invisible points of a run; the functions here cut the runs out of the
+//! curves, and give it the size of a pixel.
 
 use egui_plot::{PlotBounds, PlotTransform};
 

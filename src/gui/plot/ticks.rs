@@ -119,8 +119,10 @@ impl Ticks {
         if !(is_finite && units_per_point > 0.0 && bounds.0 < bounds.1) {
             return Vec::new();
         }
+        // Step 1.
         let mut gap = self.label_gap();
         let mut ticks = self.ticks_between(bounds, units_per_point, gap);
+        // Step 2.
         let least_gap = if least > USUAL_LEAST_LABELS {
             LOW_LABEL_GAP
         } else {
@@ -130,6 +132,7 @@ impl Ticks {
             gap = (CLOSER * gap).max(least_gap);
             ticks = self.ticks_between(bounds, units_per_point, gap);
         }
+        // Step 3.
         let mut marks = Vec::with_capacity(ticks.len());
         for tick in ticks {
             let step_pt = if tick.label.is_some() {

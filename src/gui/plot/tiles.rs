@@ -28,6 +28,7 @@ impl Tiles {
     pub(super) fn arrange(count: usize, available: Vec2, least: Vec2) -> Self {
         let count = count.max(1);
         let mut best: Option<Self> = None;
+        // Step 1.
         for columns in 1..=count {
             let rows = count.div_ceil(columns);
             let size = vec2(available.x / columns as f32, available.y / rows as f32);
@@ -37,10 +38,12 @@ impl Tiles {
                 size,
             };
             let fits = size.x >= least.x && size.y >= least.y;
+            // Step 2.
             if fits && best.is_none_or(|best| tiles.usefulness(count) >= best.usefulness(count)) {
                 best = Some(tiles);
             }
         }
+        // Step 3.
         best.unwrap_or(Self {
             columns: count,
             rows: 1,

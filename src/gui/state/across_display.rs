@@ -1,4 +1,7 @@
 //! Contents of the plots across conditions.
+//!
+//! A plot across conditions draws the response in focus in each condition, with one model for each
+//! role ([`AcrossRole`]): identified, scheduled, corrected, representative, nominal.
 
 use gdcm_model::dataset::{ConditionId, Pair};
 use gdcm_study::{AcrossRole, Study};

@@ -1,5 +1,10 @@
 //! State while models are imported: the models found, the rules that turn them into a dataset, and
 //! how both are displayed.
+//!
+//! A found model ([`FoundModel`]) is a model as read from a file, with the channels in the file's
+//! order and units. The rules ([`Rules`]) say where the found models belong in the dataset. An
+//! assembly ([`Assembly`]) applies rules to found models; each of its parts is a found model with
+//! its place in the dataset and its channels matched.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;

@@ -1,4 +1,7 @@
 //! Table columns for imported models.
+//!
+//! A part ([`Part`]) is a model found in a file (`found`) with its row in the rules (`row`): the
+//! condition, the role and the perturbation of the trim that the model gets in the dataset.
 
 use gdcm_model::assembly::part::Part;
 use gdcm_model::units::number;

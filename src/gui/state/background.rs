@@ -23,7 +23,8 @@ impl Steps {
 pub struct Background {
     /// Analysis with the current settings.
     pub analysis: Option<Steps>,
-    /// Problems whose optimality proof is running, waiting, or not yet part of the results.
+    /// Problems (each optimises the gains in a condition) whose optimality proof is running,
+    /// waiting, or not yet part of the results.
     pub proofs: Vec<Arc<Problem>>,
     /// Whether the costs of constraining and releasing responses are being computed.
     pub toggles: bool,

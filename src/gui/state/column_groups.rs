@@ -1,5 +1,9 @@
 //! Groups of records with the same columns: columns and units are set once for each group, over all
 //! conditions.
+//!
+//! A layout ([`RecordLayout`]) assigns a record's columns to the channels. A remedy corrects a
+//! channel in a single record (M14.16: docs/identification.md). A part is a time span of a record,
+//! used instead of the whole.
 
 use std::collections::BTreeSet;
 

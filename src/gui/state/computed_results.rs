@@ -1,5 +1,8 @@
 //! Computed results with their jobs, and how far the requests for them have come.
 //!
+//! A job holds the inputs of a computation; a result is kept with its job, which says to what the
+//! result belongs.
+//!
 //! Each change to the study or to the displayed condition makes a request with a new, greater
 //! number. Its analysis arrives later: until `received` equals `requested`, the displayed results
 //! are older than the settings. If the request has been stopped, `stopped` is set, and no analysis

@@ -1,5 +1,8 @@
 //! Progress of every condition's identification, as the condition list, the page bar and the status
 //! bar show it.
+//!
+//! χ²/dof is the cost of a fit per degree of freedom; it is near 1 if the residual is noise.
+//! M-numbers are sections of docs/identification.md.
 
 use gdcm_model::dataset::{ConditionId, Dynamics};
 use gdcm_study::decisions::adopted_models::AdoptedModels;
@@ -39,8 +42,8 @@ pub enum FitStatus {
     },
 }
 
-/// The recommended model's costs per degree of freedom. Every place in the window shows these
-/// numbers, so that they agree.
+/// Costs per degree of freedom of the recommended model (the refined one, "CT-PBSID, refined").
+/// Every place in the window shows these numbers, so that they agree.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FitCosts {
     pub fitted: f64,

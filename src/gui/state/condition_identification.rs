@@ -4,6 +4,11 @@
 //! `ConditionRecords::found` keeps the latest outcome with its job. `ConditionRecords::changed` is
 //! set once records or settings have changed; the cautions about the outcome are then no longer
 //! shown.
+//!
+//! A row is a record or a part of one. Its `guess` says what manoeuvre it is and whether it is held
+//! out, from its name or from the engineer; held-out records test the model instead of being
+//! fitted. A reference is a recorded signal that excited the loop from outside (M14.15:
+//! docs/identification.md).
 
 use std::sync::Arc;
 

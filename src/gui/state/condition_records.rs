@@ -6,6 +6,9 @@
 //! the whole record is no longer used; once the last part is removed, it is used again. A record
 //! that the engineer left out stays out.
 //!
+//! A row's `layout` assigns its columns to the channels; its `guess` says what manoeuvre it is and
+//! whether it is held out, from its name or from the engineer.
+//!
 //! `condition_identification.rs` extends [`ConditionRecords`] by the identification.
 
 use std::collections::BTreeMap;
@@ -57,7 +60,8 @@ pub struct ConditionRecords {
     pub outputs: Vec<ChannelPreparation>,
     /// Identification band \[rad/s\]; `None` selects the study's band.
     pub band: Option<[f64; 2]>,
-    /// Columns with recorded references that excited the loop externally (M14.15).
+    /// Columns with recorded references that excited the loop externally (M14.15:
+    /// docs/identification.md).
     pub references: Vec<String>,
     /// Search settings that replace the defaults.
     pub search: SearchSpace,
@@ -213,6 +217,7 @@ impl ConditionRecords {
         read_from: &BTreeMap<String, PathBuf>,
         channels: &RecordChannels,
     ) -> AddedRecord {
+        // Step 1.
         if self
             .rows
             .iter()
@@ -220,6 +225,7 @@ impl ConditionRecords {
         {
             return AddedRecord::KnownAlready;
         }
+        // Step 2.
         if let Some(old) = self
             .rows
             .iter_mut()
@@ -231,6 +237,7 @@ impl ConditionRecords {
             self.cut_parts_anew(&old.table.source, &row, channels);
             return AddedRecord::ReadAgain;
         }
+        // Step 3.
         self.give_free_name(&mut row);
         self.rows.push(row);
         AddedRecord::New

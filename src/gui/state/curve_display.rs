@@ -1,5 +1,8 @@
 //! Options for displaying plots over frequency: units, hidden curves, cursors. No result depends on
 //! them.
+//!
+//! A role ([`Role`]) is the meaning of curves, such as nominal, identified or corrected model;
+//! curves are shown, hidden and raised by role.
 
 use std::collections::{BTreeMap, BTreeSet};
 

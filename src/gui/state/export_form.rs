@@ -1,5 +1,9 @@
 //! The export dialog: its choices and typed texts, and its dry run, which computes every file
 //! without writing any. `export_plan.rs` says when a dry run is requested.
+//!
+//! A plan ([`ExportPlan`]) is the outcome of a dry run: every file with its contents or the reason
+//! why it cannot be written, and notes on what the files omit or approximate. A remedy, offered
+//! beside a note, removes or reduces what the note states.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};

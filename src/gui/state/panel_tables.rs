@@ -1,4 +1,12 @@
 //! The panels' tables (conditions, models, matrix, channels) as text, to be copied and saved.
+//!
+//! G and D are the gain and the delay that would match a response (M6: docs/method.md), J is the
+//! cost of its mismatch (M4). k and τ are a channel's gain and delay; the net gain of a response is
+//! the product of the gains of its two channels, its net delay the sum of their delays. A *held*
+//! (constrained) response has its net gain matched exactly, its delay as far as possible.
+//!
+//! A bundle is all physics models, or all identified models, in a condition; its representative
+//! stands for it in comparisons (M5).
 
 use gdcm_method::correction::Channel;
 use gdcm_method::fidelity::SUGGESTION_RATIO;

@@ -1,4 +1,7 @@
 //! Changes to flight records in the undo history.
+//!
+//! A remedy corrects a channel in a single record (M14.16: docs/identification.md); a part is a
+//! time span of a record, used instead of the whole.
 
 use gdcm_model::dataset::ConditionId;
 use gdcm_model::dataset::condition::RecordKind;

@@ -1,4 +1,7 @@
 //! State behind the Records view: flight records by condition.
+//!
+//! A row is a record, or a part (time span) of one. An identification job ([`IdentifyJob`])
+//! identifies models from the records that a condition uses.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;

@@ -1,4 +1,7 @@
 //! Pages in the Records view, and the roles that curves over time have.
+//!
+//! The recommended model of an identification is the refined one, "CT-PBSID, refined" (M14:
+//! docs/identification.md).
 
 use egui::Color32;
 

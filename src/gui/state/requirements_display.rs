@@ -1,4 +1,7 @@
 //! Options for displaying the requirements: selected cell, details, column order.
+//!
+//! The requirements (M17: docs/requirements.md) are shown as a grid with a row for each requirement
+//! and a column for each condition.
 
 use gdcm_model::dataset::ConditionId;
 use gdcm_study::results::grid_requirement::{Requirement, RequirementGroup};

@@ -1,4 +1,7 @@
 //! Changes since the settings panel was opened.
+//!
+//! A settings session lasts while the settings panel is open. It keeps the settings and the
+//! analysis from its beginning, with which the present ones are compared.
 
 use std::sync::Arc;
 

@@ -1,5 +1,9 @@
 //! Views between the side panels: their groups, and for each view a row with name, purpose and
 //! properties.
+//!
+//! Views with a group are in the view bar; the others are pages of the dock, the area below the
+//! views. M16: docs/couplings.md, M17: docs/requirements.md, M18: docs/physics.md; figures are
+//! numbered as in the paper (docs/figures.md).
 
 use serde::{Deserialize, Serialize};
 

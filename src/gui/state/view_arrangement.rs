@@ -145,6 +145,7 @@ impl Arrangement {
     /// 3. a group that shows a view that is now in another group: `None`;
     /// 4. a dock that shows no dock page shows the net gain.
     pub fn if_valid(mut self) -> Option<Self> {
+        // Step 1.
         if let Some(page) = self.beside
             && page.is_dock_page()
         {
@@ -154,6 +155,7 @@ impl Arrangement {
         for group in ViewGroup::ALL {
             let index = group as usize;
             let view = self.of_groups[index];
+            // Step 2.
             if view.is_dock_page() {
                 self.of_groups[index] = FIRST_VIEWS[index];
                 if self.group == group {
@@ -161,9 +163,11 @@ impl Arrangement {
                     self.group = ViewGroup::Response;
                 }
             } else if view.facts().group != Some(group) {
+                // Step 3.
                 return None;
             }
         }
+        // Step 4.
         if !self.dock.is_dock_page() {
             self.dock = View::NetGain;
         }

@@ -1,4 +1,7 @@
 //! Form for a dataset made from records.
+//!
+//! A column's meaning is the channel, such as "P" or "LON", that the logging system's documentation
+//! gives it.
 
 use std::collections::BTreeSet;
 

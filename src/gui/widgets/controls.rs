@@ -2,6 +2,9 @@
 //!
 //! Texts are in `painted_text.rs` and `text_fields.rs`, numbers in `number_field.rs` and
 //! `number_entry.rs`, check boxes and drop-down lists in `choices.rs`, list rows in `list_row.rs`.
+//!
+//! A command is a request that a control adds to a list for its caller to carry out; its type `C`
+//! is the caller's.
 
 use egui::{Button, Rect, RectAlign, Response, Role, Tooltip, Ui, WidgetInfo};
 

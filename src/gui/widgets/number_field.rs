@@ -2,6 +2,8 @@
 //!
 //! egui's [`DragValue`] draws the field. This file adds messages about refused entries, and
 //! restores the old value after Escape.
+//!
+//! [`Digits`] says how many digits of the number are shown.
 
 use std::cell::RefCell;
 use std::ops::RangeInclusive;
@@ -151,6 +153,7 @@ impl<'a> NumberField<'a> {
         unparsed: Option<String>,
         response: &Response,
     ) -> Entered {
+        // Step 1.
         let is_dragged = response.dragged();
         let after = if is_dragged {
             after.clamp(*self.range.start(), *self.range.end())
@@ -165,9 +168,11 @@ impl<'a> NumberField<'a> {
             is_dragged,
             is_ended: response.drag_stopped() || response.lost_focus(),
         };
+        // Step 2.
         if after != before && is_allowed {
             outcome.value = Some(after);
         }
+        // Step 3.
         if let Some(text) = unparsed {
             let text = self.refusal(&format!("\"{text}\""), before);
             outcome.refusal = Some(Message::new("not-a-number", text));

@@ -43,7 +43,7 @@ const fn hex(rgb: u32) -> Color32 {
     Color32::from_rgb((rgb >> 16) as u8, (rgb >> 8) as u8, rgb as u8)
 }
 
-/// Values of J between which [`Palette::heat`] is interpolated.
+/// Values of the cost J (M4: docs/method.md) between which [`Palette::heat`] is interpolated.
 pub const HEAT_COSTS: [f32; 5] = [0.0, 10.0, 30.0, 60.0, 110.0];
 
 /// Theme colours, each with a single meaning.

@@ -86,10 +86,12 @@ pub fn table_grid_ui<C: From<TableRequest>>(
     palette: &Palette,
     commands: &mut Vec<C>,
 ) -> Option<TableClick> {
+    // Step 1.
     let order = sorting.order(table);
     let layout = TableLayout::new(ui, table, &order, ui.available_width());
     let size = vec2(layout.width, HEADING_HEIGHT + layout.height());
     let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
+    // Step 2.
     // The headings stay at the upper edge of the visible part until the last row.
     let lowest = (rect.bottom() - HEADING_HEIGHT - ROW_HEIGHT).max(rect.top());
     let heading_top = ui.clip_rect().top().clamp(rect.top(), lowest);
@@ -105,6 +107,7 @@ pub fn table_grid_ui<C: From<TableRequest>>(
         palette,
     };
     drawn.headings_ui(ui, sorting, commands);
+    // Step 3.
     let outer_clip = ui.clip_rect();
     ui.set_clip_rect(outer_clip.with_min_y(drawn.heading.bottom().max(outer_clip.top())));
     let clicked = drawn.rows_ui(ui, look, commands);

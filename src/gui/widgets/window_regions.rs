@@ -65,6 +65,7 @@ fn key() -> Id {
 /// 2. record them, the visible rectangle, and the focused control if it is among them;
 /// 3. scroll to a control that has just received the focus.
 pub fn region_ui<R>(ui: &mut Ui, region: Region, add: impl FnOnce(&mut Ui) -> R) -> R {
+    // Step 1.
     let layer = ui.layer_id();
     let ctx = ui.ctx().clone();
     let earlier_count =
@@ -84,6 +85,7 @@ pub fn region_ui<R>(ui: &mut Ui, region: Region, add: impl FnOnce(&mut Ui) -> R)
             .map(|widget| widget.id)
             .collect()
     });
+    // Step 2.
     let focused = ctx
         .memory(|memory| memory.focused())
         .filter(|focused| controls.contains(focused));
@@ -107,6 +109,7 @@ pub fn region_ui<R>(ui: &mut Ui, region: Region, add: impl FnOnce(&mut Ui) -> R)
         };
         known.visited = focused.or(known.visited);
     });
+    // Step 3.
     if let Some(focused) = focused
         && let Some(response) = ctx.read_response(focused)
         && response.gained_focus()

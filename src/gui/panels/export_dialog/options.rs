@@ -1,4 +1,7 @@
 //! Columns at the left of the export dialog: formats; what is exported, and where to.
+//!
+//! The breakpoints are the airspeeds of the exported lookup tables; the Padé order is that of the
+//! approximation of delays in exported models.
 
 use egui::{Button, DragValue, RichText, Role, ScrollArea, Sense, TextEdit, Ui, WidgetInfo, vec2};
 

@@ -1,3 +1,5 @@
+//! Interaction with a Bode plot: clicks, dragging, zooming, fitting, chips and menus.
+
 use std::collections::BTreeSet;
 
 use egui::vec2;

@@ -1,3 +1,5 @@
+//! Interaction with a figure of gains: dots, columns, zooming and scrolling.
+
 use egui::vec2;
 
 use gdcm_plot::figure::axis::Axis;

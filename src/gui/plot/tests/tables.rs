@@ -1,3 +1,5 @@
+//! Interaction with the overview.
+
 use egui::vec2;
 use egui_kittest::kittest::Queryable;
 

@@ -1,5 +1,10 @@
 //! Live-analysis job, which starts again after every change to the study or the displayed
 //! condition, and after a proof.
+//!
+//! A *proof* is the solution of a condition's gain problem (M8: docs/method.md), proven optimal by
+//! a job of its own. The live analysis has a limited effort for each proof, so it may first show
+//! gains that are not yet proven. The *distances* compare the models of a condition with each
+//! other.
 
 use std::sync::Arc;
 use std::time::Instant;

@@ -1,5 +1,8 @@
 //! Commands from the import view, which assembles a dataset from models: rules, and the dataset to
 //! be made. The models are read by `model_reading.rs`.
+//!
+//! The *rules* hold what the engineer declares about the files: channels, units and signs, column
+//! headings, and each model's condition and role.
 
 use std::path::PathBuf;
 

@@ -3,6 +3,9 @@
 //!
 //! [`Autosave`] sends tasks to the thread, whose state is the [`Keeper`] in `autosave/keeper.rs`.
 //! `recovery.rs` offers the kept decisions at the next start.
+//!
+//! A *lost study* is a recovery file that an earlier window left behind because it ended without
+//! saving.
 
 mod keeper;
 

@@ -1,6 +1,7 @@
 //! The window's background jobs: the continuously updated analysis ("live analysis") and all
 //! others. The functions called by [`BackgroundJobs::start`] list every kind of job with its tools,
-//! its trigger (often in `wanted_jobs.rs`) and its destination.
+//! its trigger (often in `wanted_jobs.rs`) and its destination. The *tools* are kept from job to
+//! job: an engine with its caches, an executor that uses all cores, or nothing.
 //!
 //! The kinds share a thread pool. Order of urgency, and its reasons:
 //!

@@ -29,7 +29,8 @@ pub(super) enum ReadFor {
     Opening,
     /// The file replaces the open dataset, which was read from it earlier.
     Reloading,
-    /// The file holds unsaved decisions to be continued; the value is the number of their offer.
+    /// The file holds unsaved decisions to be continued; the value is the number of the offer to
+    /// restore them (`recovery.rs`).
     Restoring(usize),
 }
 

@@ -1,7 +1,8 @@
 //! The command line that writes the same files as the export dialog.
 //!
 //! It names the saved study, or else the dataset, with options for the decisions that differ from
-//! this file. If options cannot express a difference, the study must be saved first.
+//! this file. If options cannot express a difference, the study must be saved first. A *held*
+//! response is one that the correction must match exactly.
 
 use std::path::{Path, PathBuf};
 
@@ -160,12 +161,14 @@ fn given_options(form: &ExportForm, breakpoints_kt: Option<&[f64]>) -> Vec<Given
 ///    an option, and apply it to the trial;
 /// 3. the trial must then equal the study; anything else that differs cannot be expressed.
 fn study_words(study: &Study, source: &CommandSource) -> Option<Vec<String>> {
+    // Step 1.
     let mut trial = source.study.clone()?;
     let mut words = Vec::new();
     if let Some(file) = &source.file {
         let path = std::path::absolute(file).unwrap_or_else(|_| file.clone());
         words.push(path.display().to_string());
     }
+    // Step 2.
     for setting in SETTINGS {
         let value = setting.value(&study.settings);
         if setting.value(&trial.settings) == value {
@@ -176,6 +179,7 @@ fn study_words(study: &Study, source: &CommandSource) -> Option<Vec<String>> {
     }
     words.extend(held_words(study, &mut trial)?);
     words.extend(condition_words(study, &mut trial)?);
+    // Step 3.
     let is_same = trial.settings == study.settings
         && trial.choices == study.choices
         && trial.signs == study.signs

@@ -1,4 +1,10 @@
-//! Exporting the corrections: the dialog's dry run, the written files, the messages and the report.
+//! Exporting the corrections: the dialog's dry run, the written files and the report. Below them,
+//! two checks for every command that writes results: whether the results are complete
+//! (`analysis_to_write`), and whether error bars are missing (`absent_bars`).
+//!
+//! A *dry run* is a background job that computes every file except the report without writing any;
+//! its outcome is the *plan*, with the contents and notes that the dialog shows. The dialog
+//! composes the report in a job of its own.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -49,6 +55,7 @@ impl GdcmApp {
     /// has not closed the dialog since.
     pub(super) fn take_export_plan(&mut self, job: ExportPlanJob, plan: ExportPlan) {
         self.state.forms.export.plan = Some((job, plan));
+        // If the report is composed already, the plan takes over its notes.
         self.state.forms.export.join_report_notes();
         let is_awaited = std::mem::take(&mut self.state.forms.export.is_awaited);
         if is_awaited && self.state.forms.shown == Some(FormKind::Export) {
@@ -62,22 +69,27 @@ impl GdcmApp {
     /// 2. if the results are incomplete, show why;
     /// 3. if the dry run has not ended, wait: [`Self::take_export_plan`] calls this function again;
     /// 4. write the files; if that fails, request a new dry run, which sees what is in the folder
-    ///    now.
+    ///    now;
+    /// 5. close the dialog, and start the report, which is written when its job ends.
     pub(super) fn export(&mut self) {
+        // Step 1.
         let form = &mut self.state.forms.export;
         form.error = None;
         if let Err(message) = form.set() {
             form.error = Some(message);
             return;
         }
+        // Step 2.
         if let Some(message) = self.state.incomplete_results() {
             self.state.forms.export.error = Some(message);
             return;
         }
+        // Step 3.
         let Some(plan) = self.state.current_export_plan() else {
             self.state.forms.export.is_awaited = true;
             return;
         };
+        // Step 4.
         let plan = plan.clone();
         let folder = self.state.forms.export.folder_path();
         let existing = if self.state.forms.export.choices.replaces {
@@ -95,6 +107,8 @@ impl GdcmApp {
         }
     }
 
+    /// Writes the planned files. The report is written later (step 5), but its path is checked
+    /// here, so that nothing is written if the report cannot be.
     fn write_export(
         &self,
         plan: &ExportPlan,
@@ -108,10 +122,11 @@ impl GdcmApp {
         plan.write(&folder, outputs)
     }
 
-    /// Closes the dialog after the files were written, reports them, stores the choices in the
-    /// study if this was chosen, and starts the report if it is among the files.
+    /// Step 5: closes the dialog after the files were written, reports them, stores the choices in
+    /// the study if this was chosen, and starts the report if it is among the files.
     fn exported(&mut self, plan: &ExportPlan, folder: PathBuf, count: usize, existing: Existing) {
         self.state.forms.shown = None;
+        // Before the dialog's contents are dropped.
         let report = self.current_report();
         let form = &self.state.forms.export;
         if form.remembers {
@@ -120,6 +135,7 @@ impl GdcmApp {
         }
         self.state.forms.export.drop_contents();
         self.files.last_folder = Some(folder.clone());
+        // If the report is the only file, its job reports it.
         if count > 0 {
             let text = format!(
                 "exported {} to {}",
@@ -154,6 +170,7 @@ impl GdcmApp {
             ExportRemedy::SignedDelaysOverAirspeed => {
                 self.decide(&setting_table::TAU_DEGREE.to(Value::Choice(SIGNED_DELAY_DEGREE)));
             }
+            // The other remedies change the form: `ExportForm::apply_remedy` has carried them out.
             _ => {}
         }
     }

@@ -22,6 +22,7 @@ use crate::message::Message;
 impl GdcmApp {
     /// Copies the values shown by a view to the clipboard.
     pub(super) fn copy_figure(&mut self, view: View) {
+        // Some views save tables of their own instead of the values in their figure.
         let tables = match tables_of_view(&self.state, view) {
             Some(tables) => tables,
             None => match self.figure_of(view) {

@@ -1,4 +1,7 @@
 //! Kind of job: its trigger, its output's destination, and its queue.
+//!
+//! Most kinds run whenever the display needs their output. A kind with its own *trigger* runs only
+//! for a request: the live analysis for a changed study, report and identification for a command.
 
 use gdcm_study::jobs::job::Job;
 

@@ -52,12 +52,14 @@ pub fn open(path: Option<PathBuf>) -> u8 {
     let request = Request::new(path);
     let command = request.headless_command();
     let Request { dataset, models } = request;
+    // Step 1.
     if let Some(reason) = missing_display() {
         if load_and_report(dataset).trouble.is_some() {
             return WRONG_FILE;
         }
         return fail(&no_window(&reason, &command));
     }
+    // Step 2.
     let reading = match start_reading(dataset) {
         Ok(reading) => reading,
         Err(reason) => {
@@ -65,14 +67,17 @@ pub fn open(path: Option<PathBuf>) -> u8 {
             return fail(&no_window(&reason, &command));
         }
     };
+    // Step 3.
     if let Some(directory) = eframe::storage_dir(APP_ID)
         && let Some(caution) = repair_zoom(&directory.join("app.ron"))
     {
         eprintln!("caution: {caution}");
     }
+    // Step 4.
     std::panic::set_hook(Box::new(record_panic));
     let drawn = Arc::new(OnceLock::new());
     let outcome = caught(|| run(reading, models, &drawn));
+    // Step 5.
     match ending(outcome, drawn.get(), &command) {
         Ok(()) => 0,
         Err(message) => fail(&message),

@@ -1,4 +1,7 @@
 //! Commands that change the layout and the focus.
+//!
+//! The *arrangement* says which views are shown: in front, beside the front view and in the dock. A
+//! *region* is a part of the window, such as a panel; F6 moves the focus from one to the next.
 
 use super::GdcmApp;
 use crate::gui::commands::layout::LayoutCommand;

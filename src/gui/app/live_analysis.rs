@@ -7,7 +7,8 @@
 //! 3. The job sends the displayed condition's result (`Results::first`) before the others.
 //! 4. `show_analysis` stores the whole analysis and its request number (`Results::received`), and
 //!    requests the jobs that complete it: curves, error bars, proofs.
-//! 5. `take_proof` receives a proof and starts the job again, with the same request number.
+//! 5. `take_proof` receives a proof that a condition's gains are optimal, and starts the job again,
+//!    with the same request number.
 
 use std::sync::Arc;
 

@@ -1,4 +1,8 @@
 //! Reads models from files in a thread, and adds them to the import.
+//!
+//! The *import* lists the models from which a dataset is to be assembled, with the files that had
+//! none. A reading may be stopped, or replaced by a newer one, whose number is larger; see
+//! `readers.rs`.
 
 use std::cell::Cell;
 use std::path::{Path, PathBuf};
@@ -96,6 +100,7 @@ impl GdcmApp {
         import.faults.extend(found.faults);
         import.ignored.extend(found.ignored);
         import.tables.extend(found.tables);
+        // Columns whose units follow neither from headings nor from values.
         import.unsaid.extend(found.missing_units);
         if import.dataset_path.is_empty()
             && let Some(first) = paths.first()

@@ -1,4 +1,6 @@
 //! Commands from the Records view. Edits are in `record_edits.rs` and `record_layout_edits.rs`.
+//!
+//! A *row* is a record as it was read, with its layout: the columns assigned to the channels.
 
 use gdcm_study::Edit;
 

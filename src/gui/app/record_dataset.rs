@@ -1,4 +1,7 @@
 //! Makes a dataset from flight records, in a thread.
+//!
+//! A record is read as a *table* of columns; its *layout* assigns columns to channels. *Topics* are
+//! tables from one log with clocks of their own, which are combined into one record.
 
 use std::path::{Path, PathBuf};
 
@@ -135,12 +138,14 @@ impl DatasetRequest {
             band,
             path,
         } = self;
+        // Step 1.
         let read = read_records(&sources, progress).map_err(|error| vec![error.into()])?;
         let mut problems = Vec::new();
         for fault in read.faults {
             problems.push(Message::new("not-read", fault));
         }
         let mut entries = Vec::new();
+        // Steps 2 and 3.
         for table in with_topics_joined(read.tables, &channels, &TimeSettings::default()) {
             let (row, _) = LaidOutRecord::proposed(table, &channels, &TimeSettings::default());
             for problem in &row.problems {
@@ -155,6 +160,7 @@ impl DatasetRequest {
                 entries.push(relative_entry(entry, &sources, &path));
             }
         }
+        // Step 4.
         if entries.is_empty() {
             problems.truncate(MOST_PROBLEMS);
             return Err(problems);

@@ -1,5 +1,10 @@
 //! Undoable edits to a condition's records: which records are used, their parts, manoeuvres,
 //! remedies, and the identification settings.
+//!
+//! A *row* is a record as it was read, with the columns assigned to its channels (its layout); a
+//! *part* is a time span cut from a record, with a row of its own. *Topics* are a log's tables with
+//! clocks of their own. They are resampled to a common clock, which depends on the upper end of the
+//! identification band (`follow_band`).
 
 use gdcm_model::dataset::ConditionId;
 use gdcm_model::dataset::condition::ChannelRemedy;

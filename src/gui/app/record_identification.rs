@@ -1,4 +1,8 @@
 //! Identification from flight records: starts and stops the jobs, and adds the models to the study.
+//!
+//! The method is in docs/identification.md. An identification finds several models for a condition;
+//! the engineer chooses which of them replace the identified models in the study
+//! ([`AdoptionChoice`]).
 
 use std::sync::Arc;
 

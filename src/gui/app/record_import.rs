@@ -1,5 +1,10 @@
 //! Adds flight records to their conditions: starts a reading thread, which runs the functions in
 //! `record_reading.rs`, and stores the records that it found.
+//!
+//! A condition's *own* records are those that the dataset lists or that the example contains;
+//! *added* records are in files that the engineer adds. *Topics* are a log's tables with clocks of
+//! their own, which are resampled to a common clock; the clock depends on the upper end of the
+//! identification band.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -42,6 +47,7 @@ impl GdcmApp {
     /// 4. otherwise read their records in a thread, which creates the entries when it ends.
     pub(super) fn look_for_records(&mut self) {
         let id = self.state.condition().id();
+        // Step 1.
         self.follow_band(id);
         let shown_input = self.state.display.selection.pair.input;
         if self.state.shows_view(View::Records)
@@ -49,6 +55,7 @@ impl GdcmApp {
         {
             records.open_on_input(shown_input);
         }
+        // Step 2.
         if !self.shows_records() || self.state.records.reading.is_some() {
             return;
         }
@@ -57,6 +64,7 @@ impl GdcmApp {
             return;
         }
         self.state.records.example = self.files.loaded.origin.example();
+        // Step 3.
         let own = self.own_records();
         if !ids.iter().any(|id| own.may_have_records(*id)) {
             for id in ids {
@@ -64,6 +72,7 @@ impl GdcmApp {
             }
             return;
         }
+        // Step 4.
         let name = match ids.as_slice() {
             [only] => format!("the records of condition {only}"),
             _ => "the records of the other conditions".to_owned(),
@@ -241,6 +250,7 @@ impl GdcmApp {
         unassigned: Vec<LaidOutRecord>,
         start: ReadingStart,
     ) {
+        // Step 1.
         let has_problems = added
             .values()
             .flatten()
@@ -251,6 +261,7 @@ impl GdcmApp {
         }
         let mut before = self.state.records.before(added.keys().copied());
         before.sources = Some(start.sources);
+        // Step 2.
         let mut counts = AddedCounts::default();
         let read_from = self.state.records.read_from.clone();
         for (id, rows) in added {
@@ -282,6 +293,7 @@ impl GdcmApp {
             records.choose(records.chosen);
             records.changed = true;
         }
+        // Step 3.
         let unassigned_before = self.state.records.unassigned.clone();
         for row in unassigned {
             counts.count_unassigned(self.state.records.add_unassigned(row));
@@ -289,6 +301,7 @@ impl GdcmApp {
         if counts.unassigned > 0 {
             before.unassigned = Some(unassigned_before);
         }
+        // Step 4.
         if !before.conditions.is_empty() || counts.unassigned > 0 {
             let records = counts.new + counts.read_again + counts.unassigned;
             self.record_edited(RecordChange::Add { records }, before);

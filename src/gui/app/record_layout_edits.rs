@@ -1,5 +1,6 @@
 //! Edits to record layouts, which assign columns to channels. An edit to one record also changes
-//! similar records, in all conditions.
+//! similar records, in all conditions. A *listed* record is one that the dataset names, with its
+//! condition.
 
 use std::sync::Arc;
 
@@ -98,12 +99,15 @@ impl LayoutChange {
     ///    dataset's units;
     /// 3. otherwise: the record's own layout with the same changes, as far as columns are alike.
     fn layout_for(&self, row: &LaidOutRecord) -> Option<RecordLayout> {
+        // Rule 1.
         if Arc::ptr_eq(&row.table, &self.table) && row.layout == self.former {
             return Some(self.layout.clone());
         }
+        // Rule 2.
         if row.table.entry_of_dataset(&self.dataset).is_some() != self.is_listed {
             return None;
         }
+        // Rule 3.
         let change = [&self.former, &self.layout];
         Some(row.layout.following(&row.table, change, &self.table))
     }

@@ -1,5 +1,9 @@
 //! Reading flight records from files: the part that runs in the reading thread, without access to
 //! the window.
+//!
+//! A record is read as a *table* of columns; its *layout* assigns columns to channels. A *row* is a
+//! table with its layout, and with a *guess*: what the names of file and folder tell about
+//! condition and manoeuvre. *Topics* are a log's tables with clocks of their own.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -174,6 +178,7 @@ impl AddedFiles {
         channels: &RecordChannels,
         progress: &SilentProgress,
     ) -> Result<ReadRecords, FileError> {
+        // Step 1.
         let read = read_records(&self.paths, progress)?;
         let mut found = ReadRecords {
             faults: read.faults,
@@ -182,6 +187,7 @@ impl AddedFiles {
         for words in read.ignored {
             found.faults.push(format!("no record: {words}"));
         }
+        // Steps 2 to 4.
         for table in with_topics_joined(read.tables, channels, &TimeSettings::default()) {
             let file = find_file(&table.source.file, &self.paths);
             if let Some(path) = &file {
@@ -201,6 +207,7 @@ impl AddedFiles {
                 None => found.unassigned.push(row),
             }
         }
+        // Step 5.
         let mut unloaded: Vec<ConditionId> = found.added.keys().copied().collect();
         unloaded.retain(|id| !self.loaded.contains(id));
         self.own
@@ -222,9 +229,11 @@ fn condition_of(
     file: Option<&Path>,
     dataset: &Dataset,
 ) -> Option<ConditionId> {
+    // Rule 1.
     if let [only] = dataset.conditions() {
         return Some(only.id());
     }
+    // Rule 2.
     if let Some((listed, _)) = row.table.entry_of_dataset(dataset) {
         return Some(listed);
     }
@@ -236,6 +245,7 @@ fn condition_of(
         let name = folder.to_string_lossy();
         guesses.push(RecordGuess::from_name(&name, standard_patterns()));
     }
+    // Rule 3.
     for guess in &guesses {
         if let Some(id) = guess.condition_of(dataset) {
             return Some(id);
@@ -244,6 +254,7 @@ fn condition_of(
             return None;
         }
     }
+    // Rule 4.
     for guess in &guesses {
         if let Some(airspeed_kt) = guess.airspeed_kt {
             return only_condition_at(airspeed_kt, dataset);

@@ -1,5 +1,8 @@
 //! Offers to recover unsaved decisions: at the next start, the window offers the decisions from a
 //! window that ended without saving them. `autosave.rs` keeps them.
+//!
+//! A *lost study* is the recovery file of such a window; an *offer* is the message bar about it,
+//! with a number by which the engineer's answer finds the lost study.
 
 use std::path::Path;
 use std::sync::{Arc, OnceLock};

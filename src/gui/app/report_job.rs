@@ -1,4 +1,7 @@
 //! Writes the report in a background job, after asking for its path.
+//!
+//! The report is *composed* first, which takes seconds, and then written. The export dialog
+//! composes it while the engineer makes choices, and passes it on.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

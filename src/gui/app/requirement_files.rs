@@ -1,4 +1,7 @@
 //! Requirement tables: reads levels and tolerances into the study, and writes tolerances.
+//!
+//! *Levels* are boundaries over bandwidth and phase delay, as in ADS-33E-PRF; *tolerances* limit
+//! the difference between simulated and flown time histories (M17: docs/requirements.md).
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

@@ -1,4 +1,6 @@
 //! Carries out commands about decisions and their history.
+//!
+//! A *decision* is a change of the study by an [`Edit`]; the undo history records it.
 
 use std::sync::Arc;
 
@@ -27,6 +29,7 @@ impl GdcmApp {
             StudyCommand::Redo => self.restore_study(|history, study, records| {
                 history.redo(study, |before| records.exchange(before))
             }),
+            // Withdraws the edit of a first click that has turned out to begin a double click.
             StudyCommand::Forget(edit) => self.restore_study(|history, _, _| history.forget(&edit)),
         }
     }

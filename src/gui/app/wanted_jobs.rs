@@ -57,8 +57,8 @@ pub(super) fn toggles_job(state: &State) -> Option<TogglesJob> {
     Some(TogglesJob { condition })
 }
 
-/// Returns the jobs that prove the unproven problems, the displayed condition first; none while a
-/// setting is dragged.
+/// Returns the jobs that prove the gains optimal where the analysis ended without a proof, the
+/// displayed condition first; none while a setting is dragged.
 pub(super) fn proof_jobs(state: &State) -> Vec<ProofJob> {
     let Some(analysis) = state.analysis() else {
         return Vec::new();

@@ -165,11 +165,14 @@ impl GdcmApp {
         match paths.as_slice() {
             [] => {}
             [path] if !is_importing && !holds_models(path) => {
+                // Rule 2.
                 commands.push(FileCommand::Open(path.clone()).into())
             }
             _ if !is_importing && arrangement.is_shown(View::Records) => {
+                // Rule 3.
                 commands.push(RecordsCommand::Add(paths).into());
             }
+            // Rules 1 and 4.
             _ => commands.push(AssemblingCommand::Add(paths).into()),
         }
     }

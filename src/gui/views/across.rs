@@ -1,6 +1,8 @@
 //! Plots across conditions: the response in focus in every condition, coloured by airspeed, and
 //! beside it the schedule error (scheduled minus identified response). The chips are in
-//! `across_chips`, the values at the pointer in `across_readout`.
+//! `across_chips`, the values at the pointer in `across_readout`. A *role* says which of a
+//! condition's models a curve shows: nominal, identified, scheduled and so on. The *optima* are the
+//! conditions' own corrections, before the schedule smooths them over airspeed.
 
 use egui::{Rect, Ui, UiBuilder, pos2, vec2};
 
@@ -146,11 +148,14 @@ pub fn across_view_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
+    // Step 1.
     let curves = across_curves(state);
     fit_across(state);
+    // Step 2.
     let area = ui.available_rect_before_wrap();
     let chips = across_chips_ui(ui, area, state, palette, commands);
     let plots = area.with_min_y(area.top() + chips);
+    // Step 3.
     let frequency = &mut state.display.frequency;
     let pointed = frequency
         .across
@@ -198,6 +203,7 @@ pub fn across_view_ui(
         end_names: &[],
         ..response_scene
     };
+    // Step 4.
     let areas = PlotAreas::new(plots, state);
     let mut strip = None;
     if let Some(area) = areas.responses {
@@ -222,9 +228,11 @@ pub fn across_view_ui(
     } else {
         errors.pointed_omega = None;
     }
+    // Step 5.
     if areas.responses.is_some() && areas.errors.is_some() {
         errors.share_frequencies(&responses);
     }
+    // Step 6.
     let source = AcrossReadout {
         curves: &curves,
         condition: state.condition().id(),

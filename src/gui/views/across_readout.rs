@@ -1,5 +1,8 @@
 //! Values at the pointer in the plots across conditions: spread over the conditions, schedule error
 //! in the displayed condition, and the largest schedule error.
+//!
+//! J is the cost of the difference between two responses over the band (M4: docs/method.md). Its
+//! integrand weighs the errors in magnitude and phase at a frequency, so errors are compared by it.
 
 use gdcm_method::fidelity::summand;
 use gdcm_model::dataset::ConditionId;

@@ -1,5 +1,9 @@
 //! Benefit from the correction in each condition: a summary, and the change in J as bars or as a
 //! table.
+//!
+//! J is the cost of the difference between a model's response and the identified one (M4:
+//! docs/method.md); its change is J after the correction minus J before, so a negative change is a
+//! benefit. Figure numbers are those of the paper cited there.
 
 use egui::{Align, Label, Layout, Rect, RichText, Sense, Ui, Vec2, vec2};
 

@@ -1,5 +1,8 @@
 //! Texts about the assessment bars: accessible names, status text with the reason for a missing
 //! change in J, and derivations.
+//!
+//! J is the cost of the difference between a model's response and the identified one (M4:
+//! docs/method.md). A condition or a response that the assessment could not compare is *left out*.
 
 use gdcm_model::dataset::{ConditionId, Dataset, Pair};
 use gdcm_model::number_format::decimals;

@@ -1,5 +1,8 @@
 //! Pages (bars or table) and options (responses, correction, model and cost) in the assessment
 //! view.
+//!
+//! J is the cost of the difference between a model's response and the identified one (M4:
+//! docs/method.md).
 
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Button, Grid, PopupCloseBehavior, Role, Ui};

@@ -1,4 +1,8 @@
 //! Stacked bars for the change in J in each condition; `assessment_bar_words` describes them.
+//!
+//! J is the cost of the difference between a model's response and the identified one (M4:
+//! docs/method.md). It is the sum of a magnitude part and a phase part, and so is its change by the
+//! correction; each part has a bar.
 
 use gdcm_method::schedule::CostChange;
 use gdcm_model::dataset::{ConditionId, Pair};

@@ -1,5 +1,6 @@
 //! Controls for settings that the program determines unless they are set by hand, and for ranges,
-//! which may be such settings.
+//! which may be such settings. A setting's value is `Value::Nothing` where the program
+//! determines it.
 
 use egui::Role;
 

@@ -1,5 +1,6 @@
 //! Phase delay over bandwidth for a response, in the requirement details; a click on a mark selects
-//! its condition. Bandwidth and phase delay are those of ADS-33E-PRF (M17.1).
+//! its condition. Bandwidth and phase delay are those of ADS-33E-PRF (M17.1: docs/requirements.md).
+//! A *finding* holds both for a model, or why a value is absent.
 
 use egui::{Grid, Ui, Vec2, vec2};
 

@@ -1,4 +1,7 @@
 //! Settings for the bandwidth requirements: attitude commands and level boundaries.
+//!
+//! Level boundaries divide the plane of bandwidth and phase delay into the levels of handling
+//! qualities (M17: docs/requirements.md).
 
 use std::collections::BTreeSet;
 

@@ -100,25 +100,30 @@ pub fn channels_view_ui(
 ) {
     // The scenes borrow the state: take the view out while the figures are drawn.
     let mut view = std::mem::take(&mut state.display.gains.channels);
+    // Step 1.
     let mut plots = channel_plots(state);
     let update = axis_update(ui, state);
     let (measure, across) = state.display.gains.channel_values;
     view.inputs.set_subject(&format!("{measure:?} {across:?}"));
     view.inputs.hold_axes(&mut plots.figure, update);
+    // Step 2.
     let mut inputs = plots.figure.clone();
     let mut outputs = plots.figure.clone();
     inputs.plots.truncate(state.dataset().inputs().len());
     outputs.plots.drain(..inputs.plots.len());
+    // Step 3.
     if plots.across == Across::Airspeed {
         let selected = MarkId::Condition(state.condition().id());
         for figure in [&mut inputs, &mut outputs] {
             label_selected_only(figure, &selected, SHOWS_DIFFERENCES);
         }
     }
+    // Step 4.
     if plots.figure.plots.is_empty() {
         let scene = plots.scene("channels", &plots.figure, 0, state.results.absence());
         figure_ui(ui, &scene, &mut view.inputs, palette);
     }
+    // Step 5.
     let rect = ui.available_rect_before_wrap();
     // Each half gets the height that its rows need.
     let half = vec2(rect.width(), 0.5 * rect.height());

@@ -1,5 +1,9 @@
 //! The correction's effect in the Bode view: notes with J and the remaining error, the remaining
 //! phase error as an area, and the region above the band in which the corrected model is not valid.
+//!
+//! The wanted gain G and delay D of a response are those that would match the physics model to the
+//! identified one (M6: docs/method.md). The correction provides the net gain k, the product of the
+//! gains of input and output, and the net delay τ, the sum of their delays.
 
 use gdcm_model::dataset::{Band, Pair};
 use gdcm_model::number_format::decimals;
@@ -74,7 +78,8 @@ pub(super) fn missing_phase(curves: &[BodeCurve], band: Band) -> Option<BodeBand
 }
 
 /// Returns the region above the band in which the corrected model is not valid and only shows the
-/// gain added by leads (M15.6). `None` without lead filters, or if the corrected curve is hidden.
+/// gain added by leads (M15.6: docs/lead.md). `None` without lead filters, or if the corrected
+/// curve is hidden.
 ///
 /// The text is as in `lead_price::limit_text`, but shows the band currently being edited, in the
 /// displayed unit.

@@ -193,7 +193,8 @@ impl CouplingsWords<'_> {
     }
 
     /// Draws the button that uses the couplings, or the button that removes them if they are in use
-    /// but not worthwhile.
+    /// but not worthwhile: judged by J in conditions left out of their fit or, without any, by J
+    /// under the schedule.
     fn use_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
         if !are_couplings_used(self.state) {
             let name = self.assessment.couplings.name();

@@ -1,4 +1,6 @@
 //! Determines whether couplings are in use, assessed, or offered because they are worthwhile.
+//! Couplings add constant shares of inputs (mixing) and outputs (feedback) to each input (M16:
+//! docs/couplings.md).
 
 use std::sync::Arc;
 

@@ -1,5 +1,8 @@
 //! Values on the principal curves at the pointer, at marked frequencies, or where the integrand of
 //! J is largest.
+//!
+//! J is the cost of the difference between two responses over the band (M4: docs/method.md). Its
+//! integrand weighs the errors in magnitude and phase at a frequency.
 
 use gdcm_method::fidelity::summand;
 use gdcm_model::response::wrap;

@@ -1,4 +1,6 @@
-//! Error bars on gains and delays: whether they are shown, their description, and their switch.
+//! Error bars on gains and delays: whether they are shown, their description, and their switch. The
+//! variance of a bar has two sources: the unknown trim of the flight, and the identification (M13:
+//! docs/error-bars.md).
 
 use egui::Ui;
 

@@ -1,7 +1,7 @@
 //! Evidence view: significant differences between net gains at equal airspeed, sources of their
-//! scatter, and the scheduling variables and schedule form that they require (M13). A difference is
-//! significant if the uncertainty of trim and identification does not explain it at the confidence
-//! level.
+//! scatter, and the scheduling variables and schedule form that they require (M13:
+//! docs/error-bars.md). A difference is significant if the uncertainty of trim and identification
+//! does not explain it at the confidence level.
 
 use egui::{RichText, ScrollArea, Ui, vec2};
 

@@ -1,4 +1,7 @@
 //! The views' figures, for the screen and for export: request, figure, and file name.
+//!
+//! A figure request holds what a figure shows: its kind, responses, channels and options. The
+//! drawing crate makes the figure from the request and the analysis.
 
 use std::sync::Arc;
 
@@ -17,8 +20,7 @@ use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 
 /// Returns a view's figure; `None` for a view without one, or until its results are available.
-/// Error bars are included if the figure cannot do without them, or unless the engineer has hidden
-/// them.
+/// Error bars are omitted only if the engineer has hidden them and the figure does not need them.
 pub fn figure_of(state: &State, view: View) -> Option<Figure> {
     let needs_bars = match view.figure() {
         Some(kind) => kind.needs_bars(),
@@ -45,6 +47,7 @@ pub fn figure_name(state: &State, view: View) -> String {
             parts.push(state.condition().id().to_string());
         }
     }
+    // These views always show the response in focus and no other, so its channels are in the name.
     if matches!(
         view,
         View::Bode | View::Error | View::Across | View::Leads | View::ScheduleCost
@@ -69,6 +72,8 @@ pub fn figure_request(state: &State, view: View) -> Option<FigureRequest> {
     let kind = view.figure()?;
     let pairs = view_content(view).figure_pairs;
     let display = &state.display;
+    // Quantity drawn for each channel (gain or delay), and its horizontal axis (airspeed or
+    // conditions).
     let (measure, across) = display.gains.channel_values;
     let plot = match view {
         View::Bode => Some(&display.frequency.bode),
@@ -84,6 +89,7 @@ pub fn figure_request(state: &State, view: View) -> Option<FigureRequest> {
         ..bode_options(state)
     };
     let across_display = &display.frequency.across_display;
+    // Model, correction and average for which the change in J is assessed.
     let assessed = Some(state.assessment_choice());
     let defaults = FigureRequest::new(kind, pairs(state), all_channels(state.dataset()));
     let requirements = shown_requirements(state, kind);
@@ -114,7 +120,7 @@ pub fn shown_couplings(state: &State) -> Option<Arc<CouplingsAssessment>> {
 }
 
 /// Returns the physics parameters' diagnosis for their figure; `None` for other figures, until it
-/// is available, or if it failed.
+/// is available, if the study selects no parameters, or if it failed.
 fn shown_physics(state: &State, kind: FigureKind) -> Option<Arc<PhysicsAssessment>> {
     if kind != FigureKind::Physics {
         return None;

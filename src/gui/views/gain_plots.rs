@@ -2,7 +2,8 @@
 //! commands.
 //!
 //! `channels` and `net_gain` build the figures and draw them; each dot is a quantity's value in a
-//! condition.
+//! condition: a channel's gain or delay, or a response's net gain, which is its output's gain times
+//! its input's gain.
 
 use egui::{Vec2, vec2};
 

@@ -1,5 +1,7 @@
 //! Effect that delays or leads have in each channel, and the gain that leads add above the band. A
-//! lead filter acts as if a servo were replaced by a faster one (M15).
+//! lead filter acts as if a servo were replaced by a faster one (M15: docs/lead.md). A channel's
+//! signed delay `tau_s` is a delay if it is positive and a lead if it is negative; the *price* of
+//! the leads is the gain that they add above the band.
 
 use egui::{Panel, Ui, vec2};
 

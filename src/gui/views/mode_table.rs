@@ -1,5 +1,8 @@
 //! Table of modes in the displayed condition, and a cache for this table, the zeros and the shifts
 //! of the poles due to couplings.
+//!
+//! Each mode of the reference model is followed in the other models. A model is an *outlier* for a
+//! mode if its pole has jumped: it is far from the centre of all models' poles.
 
 use std::sync::Arc;
 

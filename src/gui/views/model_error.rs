@@ -1,5 +1,8 @@
 //! Error view: the models' magnitude ratio and phase difference to the identified model, in the
 //! response in focus.
+//!
+//! An error *strip* marks frequencies at which a pilot would notice the error (MUAD, maximum
+//! unnoticeable added dynamics: docs/method.md).
 
 use egui::Ui;
 

@@ -128,6 +128,7 @@ fn evidence_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut
 /// 3. Titles of responses that are not constrained end in "(free)".
 /// 4. Axis ranges with room for the bars.
 pub fn net_gain_plots(state: &State) -> GainPlots<'_> {
+    // Step 1.
     let mut pairs = Vec::new();
     let mut figure = Figure::default();
     if let Some(analysis) = state.analysis() {
@@ -136,17 +137,20 @@ pub fn net_gain_plots(state: &State) -> GainPlots<'_> {
         dim_older_bars(state, &mut figure);
     }
     let quantities: Vec<GainQuantity> = pairs.iter().copied().map(GainQuantity::NetGain).collect();
+    // Step 2.
     if let Some(previous) = state.previous_analysis() {
         add_previous(&mut figure, &quantities, previous);
     }
     if let Some((name, analysis)) = overlaid_analysis(state) {
         add_variant(&mut figure, &quantities, analysis, name);
     }
+    // Step 3.
     for (plot, pair) in figure.plots.iter_mut().zip(&pairs) {
         if !state.study.settings.constrained[*pair] {
             plot.title = format!("{} (free)", state.dataset().pair_name(*pair));
         }
     }
+    // Step 4.
     reserve_room_for_bars(&mut figure);
     GainPlots {
         state,

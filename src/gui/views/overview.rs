@@ -1,4 +1,7 @@
 //! Overview: all responses in the displayed condition as a table of small plots.
+//!
+//! J, in each plot's note, is the cost of the difference between a model's response and the
+//! identified one (M4: docs/method.md).
 
 use egui::Ui;
 

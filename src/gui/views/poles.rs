@@ -80,12 +80,13 @@ pub fn poles_view_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    // Refreshing borrows the state: take the cache out meanwhile.
+    // Step 1. Refreshing borrows the state: take the cache out meanwhile.
     let mut modes = std::mem::take(&mut state.display.poles.modes);
     modes.refresh(state);
     state.display.poles.modes = modes;
     let height = ui.available_height();
     let has_modes = !state.display.poles.modes.table.rows.is_empty();
+    // Step 2.
     if state.display.pages.poles == PolesPage::Modes {
         if has_modes {
             modes_ui(ui, state, palette, commands);
@@ -94,6 +95,7 @@ pub fn poles_view_ui(
         }
         return;
     }
+    // Step 3.
     if has_modes && height >= LEAST_WITH_TABLE {
         restore_panel_size(ui, "modes");
         let panel = Panel::bottom("modes")
@@ -102,6 +104,7 @@ pub fn poles_view_ui(
             .min_size(60.0);
         panel.show(ui, |ui| modes_ui(ui, state, palette, commands));
     }
+    // Step 4.
     let message = absence_of_modes(state);
     // The scene borrows the state: take the view out while the figure is drawn.
     let mut view = state
@@ -184,13 +187,16 @@ pub fn poles(state: &State) -> Option<Figure> {
 ///    instead of the range on paper;
 /// 4. perturbed models have smaller dots than the nominal model and the representatives.
 fn with_screen_marks(mut figure: Figure, view: &mut FigureView, update: AxisUpdate) -> Figure {
+    // Step 1.
     if let [_, slow] = &mut figure.plots[..] {
         slow.title = "s-plane, slow modes".to_owned();
         let [real, imaginary] = SLOW;
         slow.panels[0].x.range = Some(real);
         slow.panels[0].y.range = Some(imaginary);
     }
+    // Step 2.
     view.hold_axes(&mut figure, update);
+    // Steps 3 and 4.
     for (index, plot) in figure.plots.iter_mut().enumerate() {
         let panel = &mut plot.panels[0];
         let ranges = match view.ranges(index) {

@@ -1,5 +1,9 @@
 //! Drawer with details about the selected requirement: three cards side by side in a wide window,
 //! one card with its numbers in a narrow window.
+//!
+//! A requirement asks that a property of the corrected model agrees with the identified model, or
+//! with a held-out record, within a limit; the *grid* has a cell for each requirement and condition
+//! (M17: docs/requirements.md).
 
 use egui::{Rect, Ui, UiBuilder, vec2};
 

@@ -5,6 +5,10 @@
 //! at its left a strip in the warning colour if the physics model's value is outside.
 //! [`GridLayout`] has the columns, [`GridPainter::lines`] the rows, and each kind of row a method
 //! that draws it.
+//!
+//! A requirement asks that a property of the corrected model agrees with the identified model, or
+//! with a held-out record, within a limit (M17: docs/requirements.md). Its verdict is *met* or
+//! *outside*; other cells are not determined, or have no limit.
 
 use egui::{
     Align2, EventFilter, Key, Rect, Response, Role, ScrollArea, Sense, Stroke, StrokeKind, Ui,

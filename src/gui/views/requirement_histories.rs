@@ -1,5 +1,6 @@
 //! A flight record with its tolerances, or the responses to a test input, in the requirement
-//! details (M17.2).
+//! details (M17.2: docs/requirements.md). A *quantity* is an output, or an angle integrated from a
+//! rate, with its tolerance; the *peak error* is the greatest error relative to the tolerance.
 
 use egui::{Align2, Grid, Label, Sense, Ui, Vec2, pos2, vec2};
 

@@ -1,5 +1,9 @@
 //! Responses over time for the requirements: the jobs that compute them, and their results.
 //! `requirement_histories` draws the results.
+//!
+//! The *compared record* is the one in the details: simulated with each model, and checked against
+//! the tolerances (M17.2: docs/requirements.md). The *test input* is a step or a doublet of the
+//! input in focus, without flight data.
 
 use std::sync::Arc;
 

@@ -1,5 +1,5 @@
 //! Editors for requirement limits: the fields for one grid row, and the menu with everything that
-//! determines the limits (M17).
+//! determines the limits (M17: docs/requirements.md).
 
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Button, Grid, Popup, PopupCloseBehavior, Response, Ui};

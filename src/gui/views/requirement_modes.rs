@@ -1,6 +1,6 @@
 //! Modes in the displayed condition, as a card in the requirement details: the modes of the
 //! identified model, each compared with its counterpart in the judged model, which is the physics
-//! representative with the displayed correction (M17.3).
+//! representative with the displayed correction (M17.3: docs/requirements.md).
 
 use egui::{Align2, Rect, Role, ScrollArea, Sense, Ui, pos2, vec2};
 

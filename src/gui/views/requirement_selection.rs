@@ -1,4 +1,7 @@
 //! Displayed requirement grid, its selected cell, and the commands that select another cell.
+//!
+//! A requirement is a row of the grid, a condition a column; the selected cell is that of the
+//! selected requirement in the displayed condition.
 
 use gdcm_method::requirements::ToleranceTable;
 use gdcm_model::dataset::ConditionId;

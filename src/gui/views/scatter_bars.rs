@@ -1,5 +1,6 @@
-//! Bars that divide the net gains' scatter among its sources: trim, identification, and
-//! unexplained (M13.5).
+//! Bars that divide the net gains' scatter among its sources: trim, identification, and unexplained
+//! (M13.5: docs/error-bars.md). *× expected* is the scatter relative to the one that trim and
+//! identification would cause.
 
 use egui::{
     Align2, Color32, FontId, Painter, Rect, Response, RichText, Sense, Ui, WidgetInfo, pos2, vec2,

@@ -1,5 +1,9 @@
 //! Schedule-cost view of the response in focus, with two plots over airspeed: the net gain with the
 //! schedule; and J before the correction, at each condition's optimum and under the schedule.
+//!
+//! J is the cost of the difference between a model's response and the identified one (M4:
+//! docs/method.md). The *optimum* is a condition's own correction; the schedule over airspeed is
+//! fitted to the optima.
 
 use egui::{Ui, vec2};
 
@@ -77,16 +81,21 @@ fn cost_figure(state: &State, pair: Pair) -> Figure {
     let Some(analysis) = state.analysis() else {
         return Figure::default();
     };
+    // Step 1.
     let uncertainty = painted_uncertainty(state);
     let Some(mut figure) = schedule_cost_figure(analysis, uncertainty, pair) else {
         return Figure::default();
     };
+    // Step 2.
     dim_older_bars(state, &mut figure);
+    // Step 3.
     if let Some(previous) = state.previous_analysis() {
         add_previous(&mut figure, &[GainQuantity::NetGain(pair)], previous);
     }
+    // Step 4.
     let selected = MarkId::Condition(state.condition().id());
     label_selected_only(&mut figure, &selected, SHOWS_DIFFERENCES);
+    // Step 5.
     figure.with_ranges()
 }
 

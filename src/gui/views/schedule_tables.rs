@@ -4,6 +4,9 @@
 //!
 //! *Fit* is a form's error in the conditions to which it is fitted, *left out* its error in each
 //! condition if it is fitted to the others.
+//!
+//! A *form* is a polynomial degree over airspeed, or a table; a *signed delay* is a delay or, if
+//! negative, a lead.
 
 use std::sync::Arc;
 

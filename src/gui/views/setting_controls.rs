@@ -3,6 +3,10 @@
 //!
 //! A drag pushes a change in each frame; `StudyCommand::EndEdit` ends the undo step that they
 //! share.
+//!
+//! A setting's value is in stored units, the control's in display units (`Setting::unit`). A
+//! setting can also be *nothing*: a threshold is then off, and a value that the program may
+//! determine is determined by it.
 
 use egui::{
     Align2, ComboBox, Rect, RichText, Role, Sense, Slider, Stroke, StrokeKind, Ui, UiBuilder,

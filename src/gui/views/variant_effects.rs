@@ -1,4 +1,6 @@
 //! Table with the effects of the current decisions and of each variant.
+//!
+//! A *variant* is a set of decisions that the engineer has kept under a name.
 
 use gdcm_model::dataset::Pair;
 use gdcm_model::number_format::NO_VALUE;

@@ -3,7 +3,8 @@
 //!
 //! Decisions first wait as pending, so that a drag does not write the file at each step; the oldest
 //! pending decision sets the time at which the newest are written. After an error they remain
-//! pending for a retry.
+//! pending for a retry. A *lost study* is the recovery file of an earlier window; once it is open
+//! again, it is *restored*.
 
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, RecvTimeoutError};

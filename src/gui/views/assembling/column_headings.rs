@@ -1,4 +1,7 @@
 //! Column headings in a table, and the units that follow neither from headings nor from values.
+//!
+//! A *table* is a file with frequency responses in columns. Its headings say what each column
+//! holds; the engineer may replace them.
 
 use egui::{Grid, RichText, Role, Ui};
 

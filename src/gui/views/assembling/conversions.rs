@@ -1,4 +1,5 @@
-//! Conversion factors that do not follow from the units.
+//! Conversion factors that do not follow from the units: the engineer declares them in the rules,
+//! for a channel and its unit in the files.
 
 use egui::{RichText, Ui};
 

@@ -2,6 +2,8 @@
 //!
 //! Declarations for a single model are shown with the model, those for a folder pattern only in the
 //! rules file.
+//!
+//! A *role* is the use of a file's models in their condition: physics or identified.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,6 @@
 //! Details about the displayed model: role, settings, file columns, and notes.
+//!
+//! A *part* is a model that was found in the files, with the settings that the rules give it.
 
 use egui::{Grid, RichText, Ui};
 

@@ -1,4 +1,6 @@
-//! Text fields for the displayed model: condition, flight state, channels, sample time, trim.
+//! Text fields for the displayed model: condition, flight state, channels, sample time, trim. A
+//! *part* is a model that was found in the files, with the settings that the rules give it; its
+//! *row rule* has the settings for this model alone.
 
 use egui::{Role, Ui};
 

@@ -24,6 +24,7 @@ pub(super) fn curve(found: &FoundModel, response: usize, band: (f64, f64)) -> Op
         None => model_response(found, pair(found, response), band)?,
     };
     let shape = ResponseShape::new(&values);
+    // A model in a file belongs to no condition yet: only the name of this id has a meaning.
     let model = ModelId::new(ConditionId(0), BundleKind::Physics, found.key());
     Some(BodeCurve {
         id: CurveId::Model(model),

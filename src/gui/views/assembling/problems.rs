@@ -1,4 +1,7 @@
 //! Incomplete items, cautions, and unused files.
+//!
+//! A *part* is a model that was found in the files, with the settings that the rules give it; a
+//! *reference* is a condition's identified model.
 
 use egui::{Label, RichText, ScrollArea, Sense, Ui};
 

@@ -1,4 +1,5 @@
-//! Commands that change an import's rules.
+//! Commands that change an import's rules: each holds a changed copy of all rules. A *part* is a
+//! model that was found in the files; its *row rule* has the settings for this model alone.
 
 use gdcm_model::assembly::part::Part;
 use gdcm_model::assembly::{RowRule, Rules};

@@ -1,4 +1,5 @@
-//! Bar above the table: model folders and files, undo and cancel, reading progress.
+//! Bar above the table: model folders and files, undo and cancel, reading progress. The *parts* are
+//! the models found so far.
 
 use egui::{Button, RichText, Ui};
 

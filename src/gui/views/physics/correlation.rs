@@ -1,5 +1,5 @@
 //! Correlation between the physics parameters, and the share of each parameter's effect that
-//! channel gains and delays can take (M18.3).
+//! channel gains and delays can take, that is, imitate (M18.3: docs/physics.md).
 
 use egui::{Align2, Color32, Rect, Sense, Ui, pos2, vec2};
 

@@ -1,5 +1,10 @@
 //! Evidence for the selected parameter, the parameters' effect on the correction, and cautions
 //! about the diagnosis.
+//!
+//! The terms are those of docs/physics.md (M18.3, M18.4): *explained* is the share of the misfit
+//! that a parameter removes in conditions left out of its fit, alone or when added to the
+//! parameters before it; *learned* is the share of the prior variance that the data remove; the
+//! prior is the *plausible* standard deviation of the change.
 
 use egui::{Label, RichText, ScrollArea, Ui};
 

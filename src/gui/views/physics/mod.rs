@@ -116,8 +116,10 @@ pub fn physics_view_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
+    // Step 1.
     state.display.physics.shows_everything =
         state.display.layout.is_wide && ui.available_height() >= LEAST_WHOLE;
+    // Step 2.
     let assessment = match state.physics().cloned() {
         Some(Some(Ok(assessment))) => assessment,
         Some(Some(Err(failure))) => return failure_ui(ui, &failure, palette),
@@ -135,6 +137,7 @@ pub fn physics_view_ui(
         ui.label(palette.dim(text));
         return;
     };
+    // Step 3.
     sentence_ui(ui, &findings, palette);
     let selected = state.selected_parameter(&findings);
     let ranking = Ranking {
@@ -147,6 +150,7 @@ pub fn physics_view_ui(
         findings: &findings,
         palette,
     };
+    // Step 4.
     if state.display.physics.shows_everything {
         ui.add_space(6.0);
         let height = ranking.height().min(0.5 * ui.available_height());

@@ -1,5 +1,8 @@
 //! The dataset's physics parameters in the left panel: whether each is fitted, its plausible
 //! change, and how many model runs change it in the displayed condition.
+//!
+//! A *run* is a physics model linearised with one parameter changed; from the runs the diagnosis
+//! knows how the models depend on the parameter (M18: docs/physics.md).
 
 use egui::{Button, RichText, ScrollArea, Sense, Ui, vec2};
 

@@ -1,6 +1,7 @@
 //! Ranking of the physics parameters: change with its interval, position on an axis of plausible
-//! changes, share of the misfit that each explains, and verdict (M18.4). The unit of that axis is
-//! the parameter's plausible standard deviation, the engineer's prior for its change.
+//! changes, share of the misfit that each explains, and verdict (M18.4: docs/physics.md). The unit
+//! of that axis is the parameter's plausible standard deviation, the engineer's prior for its
+//! change. A parameter is *named* if the diagnosis proposes its change.
 
 use egui::{Align2, Color32, Pos2, Rect, Sense, Stroke, Ui, pos2, vec2};
 

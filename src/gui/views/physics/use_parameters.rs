@@ -1,5 +1,8 @@
 //! Physics parameters applied to the physics models: the job that assesses them, and the control in
 //! the page bar.
+//!
+//! A parameter is *named* if the diagnosis proposes its change (M18: docs/physics.md). While no
+//! parameters are applied, the job assesses the named ones, which shows their possible benefit.
 
 use egui::{Button, RichText, Ui};
 

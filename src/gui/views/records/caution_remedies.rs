@@ -1,6 +1,9 @@
 //! Buttons that remove a caution's cause: [`caution_remedies`] for each kind of caution, and
 //! [`band_remedy`] for a failed identification. The first is the button beside the caution, the
 //! others are in a menu.
+//!
+//! A *caution* is a finding of the identification that makes its models doubtful; a *remedy* is
+//! such a button.
 
 use egui::Ui;
 
@@ -248,6 +251,7 @@ pub(super) fn remove_common_delay(
     signal: &Signal,
     delay_s: f64,
 ) -> Remedy {
+    // The delay that remains adds to the one that the latest identification has removed.
     let known_s = match &records.found {
         Some((job, _)) => match job.request.options.preparation.channel(signal) {
             Some(channel) => channel.delay_s,

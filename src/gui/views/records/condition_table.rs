@@ -1,4 +1,7 @@
 //! Table with a row for each condition that has records.
+//!
+//! χ²/dof is the cost of the fit for each degree of freedom, 1 if the model leaves only noise
+//! (M14.4: docs/identification.md).
 
 use gdcm_model::dataset::ConditionId;
 use gdcm_model::number_format::decimals;

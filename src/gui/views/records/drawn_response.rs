@@ -2,7 +2,8 @@
 //!
 //! Unwrapped phases are known up to whole turns. Models' curves are shifted by whole turns, so that
 //! they are within half a turn of the measured phase at the *anchor*, the first trusted measured
-//! point; without an anchor they are not shifted.
+//! point; without an anchor they are not shifted. The *refined* model is the recommended one;
+//! *first* is the model from which its refinement starts. M14 is in docs/identification.md.
 
 use nalgebra::Complex;
 
@@ -144,12 +145,14 @@ impl DrawnResponse {
     /// 3. Refined model on its own frequencies, and on those of its confidence band.
     /// 4. Phase residuals of the measured points, with the model at their frequencies.
     pub(super) fn new(found: &Identification, measured_band: MeasuredBand, pair: Pair) -> Self {
+        // Step 1.
         let points = &found.measured.points;
         let measured = measured_points(points, pair);
         let anchor = measured
             .iter()
             .find(|measured| measured.is_trusted)
             .map(|measured| measured.point);
+        // Step 2.
         let mut drawn = Self {
             measured,
             deviating: deviating(found, pair),
@@ -158,6 +161,7 @@ impl DrawnResponse {
         if measured_band.by_reference {
             drawn.unexcited = unexcited(points, pair);
         }
+        // Step 3.
         let mut band_omega: &[f64] = &[];
         if let Some(bands) = &found.refined.bands {
             band_omega = bands.omega();
@@ -170,6 +174,7 @@ impl DrawnResponse {
         if let Some(model) = found.refined.state_space() {
             drawn.refined = model_curve(model, measured_band.band, pair, anchor);
             drawn.recommended = curve(model, band_omega, pair, anchor);
+            // Step 4.
             let omega: Vec<f64> = drawn
                 .measured
                 .iter()

@@ -17,7 +17,8 @@ use crate::gui::state::records::RecordsPage;
 use crate::gui::widgets::controls::{Asks, named};
 use crate::gui::widgets::palette::body;
 
-/// Draws the page; `curves` are those from `plain_curves` for the response in focus.
+/// Draws the page; `curves` are those from `plain_curves` for the response in focus: every model's
+/// response, whatever the engineer has hidden in other views.
 pub(super) fn fit_ui(
     ui: &mut Ui,
     page: Page<'_>,

@@ -1,5 +1,9 @@
 //! Summary of the displayed condition's identification, at the top of the right panel: the
 //! recommended model's costs and order, its use, and progress or failure.
+//!
+//! χ²/dof is the cost of the fit for each degree of freedom, 1 if the model leaves only noise
+//! (M14.4: docs/identification.md). The *past window* and the *Laguerre pole* are the settings with
+//! which CT-PBSID has found the model (M14.3); the identification tries several of both.
 
 use egui::{Color32, Label, ProgressBar, Rect, RichText, Role, Sense, Ui, UiBuilder, vec2};
 

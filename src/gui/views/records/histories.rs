@@ -126,6 +126,7 @@ struct TimeCharts<'a> {
 
 impl<'a> TimeCharts<'a> {
     fn show(&self, ui: &mut Ui, places: &[Rect]) -> Option<TimeView> {
+        // Step 1.
         let channels = self.channels(ui);
         let with_spectrogram = self.page.state.records.spectrogram.is_some();
         // The spectrogram replaces the two additional outputs or, if there are fewer, the input.
@@ -134,6 +135,7 @@ impl<'a> TimeCharts<'a> {
             [first, ..] if with_spectrogram => Some(*first),
             _ => None,
         };
+        // Step 2.
         let mut drawn = Vec::new();
         for (number, place) in places.iter().enumerate() {
             let is_taken = match spectrogram_place {
@@ -150,12 +152,14 @@ impl<'a> TimeCharts<'a> {
             drawn.push(self.chart_ui(ui, *place, *channel, is_lowest));
         }
         let axis = drawn.last()?;
+        // Step 3.
         if let Some(place) = spectrogram_place {
             let has_ticks = places
                 .last()
                 .is_some_and(|last| place.contains(last.center()));
             spectrogram_ui(ui, self.page, self.record, place, has_ticks);
         }
+        // Step 4.
         let transform = axis.transform;
         let cursor_s = self.cursor_s(ui, places, &drawn);
         for chart in &drawn {

@@ -1,5 +1,8 @@
 //! Read-out at the right of a time chart: channel name and unit, the identified model's fit, and
 //! each role's value at the cursor.
+//!
+//! *Fit* and Theil's coefficient compare a simulated output with the measured one (M14.6:
+//! docs/identification.md).
 
 use egui::{Grid, Rect, RichText, Role as WidgetRole, Sense, Ui, pos2, vec2};
 

@@ -1,5 +1,6 @@
 //! Identified responses on the constraint matrix's grid: standard deviation in magnitude and phase,
-//! and partial coherence as a bar.
+//! and partial coherence as a bar. The constraint matrix, elsewhere in the window, has a row for
+//! each output and a column for each input.
 
 use egui::{Align2, Color32, Rect, Role, ScrollArea, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
 

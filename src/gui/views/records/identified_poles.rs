@@ -1,5 +1,8 @@
 //! Identified poles: over the model order (stabilisation diagram), and in the s-plane. A pole that
 //! stays where it is while the order grows is probably one of the aircraft, not of the noise.
+//!
+//! λ is a pole in rad/s. The records *determine* a pole if it is within the band and three of its
+//! standard deviations are at most half its modulus.
 
 use gdcm_model::response::pole_estimate::{POLE_INTERVAL, PoleEstimate};
 use gdcm_sysid::identification::Identification;

@@ -1,5 +1,8 @@
 //! Page about the inputs' excitation: a chart for each input, with its autospectrum in every
 //! record.
+//!
+//! An autospectrum is a power spectral density over frequency: it shows which frequencies an input
+//! excites.
 
 use std::sync::Arc;
 

@@ -1,5 +1,7 @@
 //! Lower part of the left panel in the Records view: the displayed condition's records, details
 //! about the displayed record, and folded sections.
+//!
+//! A *fold* is a section that is unfolded by a click on its line; at most one is open.
 
 use egui::{Align, Label, Layout, RichText, Role, ScrollArea, Sense, Ui, UiBuilder, pos2, vec2};
 

@@ -1,6 +1,12 @@
 //! Flight records for all conditions and the models identified from them: records in the left panel
 //! (`list_panel.rs`), a page about the displayed condition in the middle, and its fit in the right
 //! panel (`side_column.rs`).
+//!
+//! A *record* is a flight record as read from its file, a *part* a time span of it that is used as
+//! a record of its own; each has a *row* in the list. An identification first finds a model by
+//! CT-PBSID and then *refines* it; the refined model is the *recommended* one (M14:
+//! docs/identification.md). `Page` is the context for drawing: state, records of the displayed
+//! condition, palette.
 
 mod autospectra;
 mod caution_list;

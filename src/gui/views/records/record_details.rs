@@ -1,5 +1,8 @@
 //! Three lines about the displayed record: manoeuvre and what it excites; length and quality; fit
 //! of the other records. Above them its name and its problems.
+//!
+//! χ²/dof is the cost of the fit for each degree of freedom, 1 if the model leaves only noise
+//! (M14.4: docs/identification.md).
 
 use std::sync::Arc;
 

@@ -1,4 +1,7 @@
 //! Commands that add record files, and cautions and questions about the added records.
+//!
+//! The *assumed* units are those of the dataset, for columns whose unit is neither in the file nor
+//! clear from the values.
 
 use egui::containers::menu::MenuButton;
 use egui::{Button, Label, Ui};

@@ -40,6 +40,7 @@ impl RecordSpan {
         let mut parts = Vec::new();
         let mut whole_row = page.records.chosen;
         for (row, record) in rows.iter().enumerate() {
+            // The rows of a record, which are the whole record and its parts, have the same source.
             if record.table.source != chosen.table.source {
                 continue;
             }

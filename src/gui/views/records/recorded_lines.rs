@@ -1,5 +1,6 @@
-//! A channel's samples as lines, within the time spans drawn at full opacity
-//! ([`RecordSpan::bright_s`]) and outside them.
+//! A channel's samples as lines, within the time spans drawn at full opacity and outside them.
+//! These *bright* spans are the displayed part, the parts in use or the whole record
+//! ([`RecordSpan::bright_s`]).
 
 use std::sync::Arc;
 

@@ -1,5 +1,5 @@
 //! Recorded references: signals that drove a closed loop from outside. With them, gusts fed back
-//! into the inputs do not bias the identified response (M14.15).
+//! into the inputs do not bias the identified response (M14.15: docs/identification.md).
 
 use std::sync::Arc;
 

@@ -1,5 +1,9 @@
 //! Charts of the response in focus: measured points, identified model with its confidence band,
 //! physics and corrected models; below, partial coherence and phase residual.
+//!
+//! A measured point is *trusted* if its partial coherence and its frequency resolution suffice
+//! (`drawn_response.rs`). The *phase residual* is the measured phase minus the identified model's,
+//! in standard deviations of the measured point.
 
 use std::sync::Arc;
 
@@ -61,12 +65,15 @@ pub(super) fn response_ui(
 ) {
     let Page { state, palette, .. } = page;
     let name = state.dataset().pair_name(state.display.selection.pair);
+    // Step 1, left; the marks and the explanation follow once there is a response.
     let title = format!("Response {name}");
     let shown = painted_text(ui, heading, 0.0, &title, medium(BODY_SIZE), palette.text);
+    // Step 2.
     let Some(drawn) = drawn_response(ui, page) else {
         empty_ui(ui, page, layout);
         return;
     };
+    // Step 1, right and middle.
     let marks = caution_marks(page);
     let mut right = heading.right();
     for mark in marks.iter().rev() {
@@ -87,8 +94,10 @@ pub(super) fn response_ui(
         name: &name,
         band: job_band(page),
     };
+    // Step 3.
     charts.bode_ui(ui, layout.magnitude, BodePart::Magnitude);
     charts.bode_ui(ui, layout.phase, BodePart::Phase);
+    // Step 4.
     charts.coherence_ui(ui, layout.coherence);
     if let Some(place) = layout.residual {
         charts.residual_ui(ui, place);

@@ -1,4 +1,6 @@
-//! Identification settings: band, references, model orders, past windows, Laguerre poles.
+//! Identification settings: band, references, model orders, past windows, Laguerre poles. The last
+//! two are settings of CT-PBSID: the past window p and the pole a of its Laguerre projections
+//! (M14.3: docs/identification.md).
 
 use egui::{Grid, Id, Ui};
 

@@ -3,6 +3,8 @@
 //! Each frame builds the jobs anew, with the corrected models; a job's result is found in
 //! `state.results.simulations` by an equal job. The record is divided into windows, and each is
 //! simulated from its own initial state.
+//!
+//! Fit and Theil's coefficient of the result are defined in M14.6 (docs/identification.md).
 
 use std::sync::Arc;
 

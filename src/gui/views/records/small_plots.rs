@@ -1,5 +1,7 @@
 //! Small plots at the foot of the right column: fit over the order, and poles. A click opens the
 //! page Order.
+//!
+//! χ²/dof is the cost of the fit for each degree of freedom, 1 if the model leaves only noise.
 
 use egui::{CursorIcon, Rect, Role, Sense, Ui, pos2, vec2};
 

@@ -158,6 +158,7 @@ fn picture(spectrogram: &Spectrogram, palette: &Palette) -> ColorImage {
     let mut pixels = Vec::with_capacity(levels.len() * Spectrogram::ROWS);
     for row in (0..Spectrogram::ROWS).rev() {
         for window in levels {
+            // Levels are in dB relative to the highest power, from `FLOOR` to 0.
             let share = (1.0 - window[row] / Spectrogram::FLOOR) as f32;
             pixels.push(palette.background.lerp_to_gamma(palette.identified, share));
         }

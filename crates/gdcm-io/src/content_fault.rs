@@ -1,6 +1,9 @@
 //! Content faults in the program's own files, each with its place in the file.
 //!
-//! A fault does not contain the file path; [`FileError`](crate::file_error::FileError) adds it.
+//! A content fault is an entry that is wrong in a file of the expected format, such as a
+//! missing key or a number of another type. Its place, a [`Location`], names the condition, the
+//! model and the entry. A fault does not contain the file path;
+//! [`FileError`](crate::file_error::FileError) adds it.
 
 use gdcm_method::requirements::tolerance_check::ToleranceError;
 use gdcm_model::dataset::band::BandError;

@@ -1,4 +1,5 @@
-//! Tables as comma-separated values (RFC 4180).
+//! Tables as comma-separated values (RFC 4180). A [`Table`] holds only strings; its headings
+//! contain the units.
 
 use std::io;
 use std::io::Write;

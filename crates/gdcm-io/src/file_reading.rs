@@ -1,5 +1,6 @@
 //! Reads files within limits: their bytes, their decompressed text without a byte order mark, and
-//! the SHA-256 of the bytes.
+//! the SHA-256 of the bytes. A [`ReadingBudget`] limits memory and work, and can cancel the
+//! reading.
 
 use std::borrow::Cow;
 use std::fs;

@@ -1,4 +1,5 @@
-//! Locations in a JSON text, described in terms familiar to engineers.
+//! Locations in a JSON text, described in terms familiar to engineers. A *step* is a key or a list
+//! index on the path from the top level to a value.
 
 use std::collections::BTreeMap;
 

@@ -1,5 +1,8 @@
 //! Labels in a dataset or a study (format, version, condition ids, model names), read without the
 //! rest of the text and even if the text has an error. Messages use them to name places.
+//!
+//! The parser emits an event for each key, value and bracket; the steps (keys and list indices) to
+//! the present value tell whether it is a label.
 
 use std::collections::BTreeMap;
 

@@ -49,11 +49,14 @@ impl Format {
         path: &Path,
         budget: &ReadingBudget<'_>,
     ) -> Result<(T, Vec<FileCaution>), FileError> {
+        // Step 1.
         check_object(text, path)?;
         self.check(text, path, budget)?;
+        // Step 2.
         budget
             .take(text.len() as u64, MEMORY_PER_BYTE, "")
             .map_err(|fault| FileError::variables(path, fault))?;
+        // Step 3.
         let mut unknown = UnknownKeys::default();
         let mut json = serde_json::Deserializer::from_slice(text);
         let mut track = serde_path_to_error::Track::new();
@@ -62,6 +65,7 @@ impl Format {
         match value.and_then(|value| json.end().map(|()| value)) {
             Ok(value) => Ok((value, unknown.cautions(text))),
             Err(error) => {
+                // Step 4.
                 let steps: Vec<Step> = track.path().iter().filter_map(step_from).collect();
                 let place = location_of(&steps, &Outline::read(text));
                 Err(json_error(text, path, place, &error))

@@ -1,4 +1,5 @@
-//! Keys in a JSON text that the program does not know, for cautions.
+//! Keys in a JSON text that the program does not know, for cautions. A *step* is a key or a list
+//! index on the path from the top level to a value.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,7 @@
 //! The class `Analysis`: an analysed study.
+//!
+//! Texts are returned in the formats of `corrections.json`, `gdcm-models` and the CSV files,
+//! responses as the bytes of complex numbers.
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -111,6 +114,7 @@ impl Analysis {
             condition,
             model,
             is_scheduled,
+            // Any permitted order: the delays in a response are exact.
             pade: 1,
         };
         let response = self.read(py, |analysed| analysed.response(&choice, &omega))?;

@@ -1,4 +1,5 @@
-//! The class `Data`: a dataset or a study.
+//! The class `Data`: a dataset or a study. The dataset is returned as the text of its file,
+//! responses as the bytes of complex numbers.
 
 use std::ffi::OsString;
 use std::path::PathBuf;

@@ -1,5 +1,10 @@
 //! Exports all analysis results: `corrections.json`, `corrections.csv`, `assessment.csv`,
 //! `physics.csv`, and a MATLAB struct with the same content as `corrections.json`.
+//!
+//! The *chosen* conditions are those in the request, by default all. Remarks are lines of text
+//! for the command line, notes are facts for the list of files. The *price* of leads, which the
+//! remarks state, is the gain that they add above the band, and the frequency above which the
+//! model is not valid (M15.6).
 
 use std::sync::Arc;
 

@@ -1,4 +1,9 @@
 //! Corrected models as files: for MATLAB, for NumPy, and in the format `gdcm-models`.
+//!
+//! A corrected model has the matrices of `M_O H~ M_I` (M10, M16): a physics model with its
+//! couplings, and the gains, delays and leads of its channels. `requested_models` computes the
+//! models, `metrics` the values beside the matrices, and `export_notes` the notes on their
+//! accuracy.
 
 mod matlab;
 mod metrics;

@@ -1,11 +1,13 @@
 //! The content of `corrections.json` as a MATLAB struct.
 //!
 //! ```text
-//! 1  lists of responses -> logical matrices; net gains -> matrices
+//! 1  lists of responses -> logical matrices; net gains -> matrices; scheduled delays -> lists
 //! 2  names of members in earlier versions -> added beside the present names
 //! 3  the changed JSON -> MATLAB, with the layout in `LAYOUT`
 //! 4  names and units of the channels -> added to the struct
 //! ```
+//!
+//! A response's net gain is the product of its output's and its input's gain.
 
 use serde_json::{Value as Json, json};
 
@@ -55,6 +57,7 @@ impl EarlierName {
 /// `net_gain_table` holds all its members. Channel names and units are added, and solution members
 /// are repeated under their names from earlier versions.
 pub(super) fn corrections_struct(mut corrections: Json, dataset: &Dataset) -> Value {
+    // Step 1, for the settings.
     let settings = &mut corrections["settings"];
     for name in ["constrained", "ignored"] {
         settings[name] = marked_responses(&settings[name], dataset);
@@ -63,16 +66,18 @@ pub(super) fn corrections_struct(mut corrections: Json, dataset: &Dataset) -> Va
     if settings.get("coherence_threshold").is_none() {
         settings["coherence_threshold"] = Json::Null;
     }
+    // Steps 1 and 2, for each condition.
     if let Some(conditions) = corrections["conditions"].as_array_mut() {
         for condition in conditions {
             restructure_condition(condition, dataset);
         }
     }
-    // Channel names and units are added as separate columns below.
+    // Step 4 adds channel names and units as separate columns.
     if let Some(members) = corrections.as_object_mut() {
         members.shift_remove("inputs");
         members.shift_remove("outputs");
     }
+    // Step 1, for the schedule; without one, the struct has an empty list.
     if corrections["schedule"].is_null() {
         corrections["schedule"] = json!([]);
     }
@@ -84,7 +89,9 @@ pub(super) fn corrections_struct(mut corrections: Json, dataset: &Dataset) -> Va
             add_delay_lists(row);
         }
     }
+    // Step 3.
     let mut value = LAYOUT.value("", &corrections);
+    // Step 4.
     if let Value::Struct(records) = &mut value {
         for (side, channels) in [("input", dataset.inputs()), ("output", dataset.outputs())] {
             let names = cell_of_texts(channels.iter().map(|channel| channel.name.clone()));
@@ -117,6 +124,7 @@ fn restructure_condition(condition: &mut Json, dataset: &Dataset) {
             net_gain_value(net_gains, output, input, key, place)
         });
     }
+    // Step 2.
     for earlier in EARLIER_NAMES {
         condition[earlier.name] = condition[earlier.solution][earlier.member].clone();
     }

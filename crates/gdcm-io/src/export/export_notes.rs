@@ -1,4 +1,9 @@
 //! Notes on omissions and approximations in exported files, shared by several formats.
+//!
+//! A condition's *own* correction is its own optimum; the schedule is a regression of the
+//! optima over airspeed. A *signed delay* is a channel's delay or, if negative, its lead (M15).
+//! The *price* of leads is the gain that they add above the band, and the frequency above which
+//! the model is not valid (M15.6).
 
 use std::collections::BTreeMap;
 

@@ -7,6 +7,9 @@
 //!         merged; then the checksums of these files, if requested
 //! write   all files; the caller writes the report
 //! ```
+//!
+//! A note states an omission or an approximation in files; its remedy, if it has one, is a
+//! change to the study or the export that removes or reduces it.
 
 use std::path::{Path, PathBuf};
 

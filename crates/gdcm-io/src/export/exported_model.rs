@@ -1,6 +1,11 @@
 //! A corrected model with its accuracy, ready to be written to files.
 //!
 //! `requested_models` makes it from an analysis, `model_description` describes it in words.
+//!
+//! The *band* is the range of frequencies over which models are compared. *Delay states* and *lead
+//! states* are the states that delays and lead filters add to the model; *couplings* are an input
+//! mixing and an output feedback (M16). The *price* of leads is the gain that they add above the
+//! band, and the frequency above which the model is not valid (M15.6).
 
 use gdcm_method::correction::LeadPrice;
 use gdcm_model::dataset::{ConditionId, StateSpace};

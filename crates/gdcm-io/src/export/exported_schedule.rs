@@ -4,6 +4,10 @@
 //! A lead filter is `(1 + a s) / (1 + b s)`, or second-order with the same time constants. The
 //! exported curve is the numerator time constant `a` \[s\] (`zero_s`); `b` (`lag_s`) is a design
 //! constant.
+//!
+//! A *signed delay* is a channel's delay or, if negative, its lead, which a filter provides
+//! (M15). The *second variable* is altitude or mass, which may enter the schedule beside
+//! airspeed (M13.7).
 
 use gdcm_method::correction::Channel;
 use gdcm_method::couplings::CouplingMatrices;

@@ -1,5 +1,11 @@
-//! Lookup tables with scheduled gains and delays at given airspeeds, for linear interpolation: as
-//! text, and for MATLAB.
+//! Lookup tables with scheduled gains and delays at given airspeeds, for linear interpolation:
+//! as text, and for MATLAB.
+//!
+//! A row is a *breakpoint*: an airspeed and, if scheduled, a value of the second variable
+//! (altitude or mass). A column holds a channel's gain, delay or lead (the numerator time
+//! constant of its lead filter), or an entry of the mixing `M~` among the inputs
+//! (M16). A column's *deviation* is the maximum difference between its linear
+//! interpolation and the schedule.
 
 mod csv;
 mod matlab;
@@ -162,6 +168,7 @@ impl<'e> BreakpointTable<'e> {
         breakpoints_kt: Option<&[f64]>,
     ) -> Result<Self, ExportFault> {
         scheduled.check()?;
+        // Step 1.
         let airspeeds_kt = match breakpoints_kt {
             Some(airspeeds_kt) => airspeeds_kt.to_vec(),
             None => distinct_airspeeds_kt(&scheduled),
@@ -171,6 +178,7 @@ impl<'e> BreakpointTable<'e> {
         if airspeeds_kt.is_empty() || !is_increasing || !is_finite {
             return Err(ExportFault::Breakpoints);
         }
+        // Step 2.
         let second_values = second_values(&scheduled);
         let mut rows = Vec::new();
         for &second in &second_values {
@@ -187,6 +195,7 @@ impl<'e> BreakpointTable<'e> {
             rows,
             columns: Vec::new(),
         };
+        // Step 3.
         for channel in all_channels(table.scheduled.dataset) {
             table.add_channel(channel, &second_values);
         }

@@ -2,6 +2,9 @@
 //! elsewhere, corrected models, and all results as JSON, CSV or a MATLAB struct. Each is an
 //! [`ExportFormat`]; the command line, the window and the documentation list the formats in
 //! [`EXPORTERS`].
+//!
+//! A format computes an [`Exported`] from an [`Export`]: the contents of the file with
+//! *remarks*, lines of text for the command line, and *notes*, facts for the list of files.
 
 mod all_results;
 mod corrected_models;
@@ -217,8 +220,9 @@ impl ExportRequest {
 }
 
 impl<'e> Export<'e> {
-    /// Returns a remark on the price of the scheduled leads, for files that contain these leads;
-    /// empty without leads.
+    /// Returns a remark on the price of the scheduled leads (the gain that they add above the band,
+    /// and the frequency above which the model is not valid; M15.6), for files that contain these
+    /// leads; empty without leads.
     fn price_remarks(&self) -> Vec<String> {
         let Ok(schedule) = &self.analysis.schedule else {
             return Vec::new();

@@ -1,4 +1,9 @@
 //! Description of an exported model and its accuracy in a single line.
+//!
+//! It names the parts that are exact and those that are approximated (delays by Padé
+//! approximants, leads by Tustin's rule), with the maximum phase error at the band's upper end,
+//! then omitted delays, couplings (M16), the price of leads (M15.6), and moved physics
+//! parameters (M18).
 
 use gdcm_model::dataset::StateSpace;
 use gdcm_model::units::{number, telling};

@@ -1,5 +1,16 @@
 //! The schedule as a function in other programming languages: one template per language, filled
 //! with numbers and strings.
+//!
+//! ```text
+//! 1  schedule -> curves over airspeed; a curve that is not finite is a fault  (export)
+//! 2  curve -> expression in the language                                      (expression)
+//! 3  heading, names and expressions -> template -> text of the file           (text)
+//!
+//! a  airspeed [kt], clamped to the range of the schedule, or of the mixing
+//! v  a, scaled
+//! b  second variable (altitude or mass), clamped to its range
+//! z  b, scaled to -1 to 1
+//! ```
 
 use std::io;
 use std::path::Path;
@@ -122,6 +133,7 @@ impl Language {
     /// is not finite.
     fn export<'e>(self, export: &Export<'e>) -> Result<Exported<'e>, ExportFault> {
         let scheduled = export.scheduled()?;
+        // Step 1.
         scheduled.check()?;
         let name = stem(export.path);
         let remarks = scheduled.notes_of_curves();
@@ -136,6 +148,7 @@ impl Language {
                 points: LEAD_INTERVALS + 1,
             });
         }
+        // Steps 2 and 3.
         let write = move |file: &mut dyn io::Write| {
             file.write_all(self.text(&scheduled, &name)?.as_bytes())
         };
@@ -156,6 +169,7 @@ impl Language {
         let couplings = scheduled
             .couplings
             .map(|couplings| self.coupling_values(couplings));
+        // Step 2: `side_values` and `coupling_values` write the expressions.
         let values = context! {
             name,
             capitals => name.to_ascii_uppercase(),
@@ -172,6 +186,7 @@ impl Language {
                 self.side_values(scheduled, "Output", &outputs),
             ],
         };
+        // Step 3.
         let whole_lines = SyntaxConfig::builder()
             .trim_blocks(true)
             .lstrip_blocks(true)

@@ -1,5 +1,18 @@
-//! Chooses the conditions, physics models and corrections that an export requests, and computes the
-//! corrected models with their accuracy.
+//! Chooses the conditions, physics models and corrections that an export requests, and computes
+//! the corrected models with their accuracy.
+//!
+//! ```text
+//! 1  couplings and physics parameters: a fault if requested but unavailable   (check_available)
+//!    for each chosen condition (exported_model):
+//! 2  physics model: nominal, representative, or named                         (model_of)
+//! 3  correction: own; scheduled, with or without leads; schedule of others    (correction_of)
+//! 4  matrices of M_O H~ M_I: H~ is the model with its couplings (M16), M_I and M_O are the gains,
+//!    delays and leads of its inputs and outputs (M10)
+//! 5  facts: phase error at the band's upper end, omitted delays, price of leads (M15.6)
+//! ```
+//!
+//! All models are those of the moved dataset: changed by the study's physics parameters (M18),
+//! where there are any.
 
 use nalgebra::Complex;
 
@@ -121,6 +134,7 @@ fn exported_model(
 ) -> Result<ExportedModel, ExportFault> {
     let id = condition.id();
     let (inputs, outputs) = analysis.study.dataset.input_and_output_names();
+    // Steps 2 and 3.
     let model = model_of(analysis, &request.role, condition)?;
     let correction = correction_of(analysis, request.correction, condition)?;
     let Dynamics::StateSpace(dynamics) = &model.dynamics else {
@@ -129,6 +143,7 @@ fn exported_model(
             model: model.name.clone(),
         });
     };
+    // Step 4.
     let corrected = analysis
         .corrected_model(condition, dynamics, &correction, request.pade)
         .map_err(|error| ExportFault::Model {
@@ -136,6 +151,7 @@ fn exported_model(
             model: model.name.clone(),
             words: coupled_model_error_text(&error, &analysis.study.dataset),
         })?;
+    // Step 5.
     let price = correction.leads.as_ref().and_then(LeadPrice::new);
     let band_top_rad_s = analysis.study.settings.band.max();
     let is_sampled = dynamics.timing().sample_time_s.is_some();

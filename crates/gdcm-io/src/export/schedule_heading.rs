@@ -1,5 +1,5 @@
 //! Headings for files with an exported schedule: its quantities with meaning and units, origin,
-//! contents, and notes.
+//! contents, and notes. The quantities are gains, delays, lead filters (M15) and couplings (M16).
 
 use gdcm_model::message_text::shortened;
 use gdcm_plot::figure::all_channels;

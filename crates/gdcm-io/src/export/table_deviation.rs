@@ -21,7 +21,8 @@ impl TableDeviation {
     /// value.
     ///
     /// A grid search is refined by a golden-section search in the two intervals beside the greatest
-    /// grid value.
+    /// grid value. The grid is necessary because the deviation, which is zero at every point of the
+    /// table, may have a maximum between any two of them.
     pub(super) fn greatest(
         points: &[f64],
         range_kt: [f64; 2],

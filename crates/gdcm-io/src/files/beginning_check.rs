@@ -38,6 +38,7 @@ pub fn check_beginning(path: &Path) -> Result<(), FileError> {
     let mut text = Vec::new();
     let mut length = FIRST;
     while length <= LAST {
+        // Step 1.
         let wanted = length - text.len();
         // A file that cannot be read or uncompressed is left to the full reader, which reports the
         // error.
@@ -48,6 +49,7 @@ pub fn check_beginning(path: &Path) -> Result<(), FileError> {
             return Ok(());
         }
         check_text(&text, path)?;
+        // Step 4.
         length *= GROWTH;
     }
     Ok(())
@@ -55,7 +57,8 @@ pub fn check_beginning(path: &Path) -> Result<(), FileError> {
 
 /// Returns the first error in the beginning of a file; the end of the text is no error.
 fn check_text(text: &[u8], path: &Path) -> Result<(), FileError> {
-    // Stop at the last comma: a number or a word that is cut off would be read with another value.
+    // Step 2. Stop at the last comma: a number or a word that is cut off would be read with another
+    // value.
     let Some(comma) = text.iter().rposition(|&byte| byte == b',') else {
         return Ok(());
     };
@@ -68,7 +71,7 @@ fn check_text(text: &[u8], path: &Path) -> Result<(), FileError> {
         check_dataset_text(text, path, &budget)
     };
     match checked {
-        // The end of the text is expected, because the text is only the beginning of the file.
+        // Step 3. The end of the text is expected: the text is only the beginning of the file.
         Err(FileError::CutOff { .. }) => Ok(()),
         checked => checked,
     }

@@ -1,5 +1,9 @@
-//! What an export contains: whether its gains, delays, leads and couplings are scheduled or
-//! corrected for each condition alone, and which parts are omitted.
+//! Contents of an export: whether its gains, delays, leads and couplings are scheduled or corrected
+//! for each condition alone, and which parts are omitted.
+//!
+//! A part is *own* if it is from each condition's own optimum, *scheduled* if it is from the
+//! schedule over airspeed; couplings (M16) count as scheduled, because they are fitted to several
+//! conditions together. Physics parameters *move* the physics models that are corrected (M18).
 
 use serde_json::{Value, json};
 
@@ -162,6 +166,7 @@ impl ExportContents {
         let others;
         let schedule = match (correction, conditions) {
             (AssessedCorrection::Own, _) => {
+                // Step 1, and step 5.
                 return Ok(Self::of_own(analysis).for_conditions(analysis, conditions));
             }
             (AssessedCorrection::ScheduleOfOthers, [condition]) => {
@@ -170,7 +175,9 @@ impl ExportContents {
             }
             _ => analysis.schedule.as_ref().map_err(|error| *error)?,
         };
+        // Step 2.
         let mut contents = Self::of_schedule(analysis, schedule);
+        // Step 3.
         contents
             .left_out
             .retain(|part| !matches!(part, LeftOutPart::Delay(_)));
@@ -182,12 +189,14 @@ impl ExportContents {
                     .map(LeftOutPart::Delay),
             );
         }
+        // Step 4.
         if correction == AssessedCorrection::ScheduledWithoutLeads
             && contents.leads != PartSource::None
         {
             contents.leads = PartSource::None;
             contents.left_out.push(LeftOutPart::Leads);
         }
+        // Step 5.
         Ok(contents.for_conditions(analysis, conditions))
     }
 

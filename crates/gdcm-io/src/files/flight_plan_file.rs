@@ -1,4 +1,9 @@
 //! Files with planned flights, `gdcm-plan` 1, written by `gdcm plan --out`.
+//!
+//! A plan predicts the 95 % intervals of a model's responses after further frequency sweeps (M14).
+//! A *target* is an interval's wanted half-width; its *ways* are more, longer, stronger or
+//! narrower-band sweeps, and a *need* is the least amount of these that reaches it. `limit` is the
+//! interval after infinitely many flights.
 
 use std::path::Path;
 

@@ -1,5 +1,10 @@
 //! Files with models identified from flight records, `gdcm-identified` 1, written by `gdcm
 //! identify`. `model_collection` reads their models.
+//!
+//! The recommended model is refined: found by a subspace method (CT-PBSID), then fitted to the
+//! records' spectra. The other models in its bundle have neighbouring orders, or are fitted without
+//! one record each. A cost per degree of freedom near 1 is adequate; held-out records are not
+//! fitted, and validate the model (M14).
 
 use std::io;
 use std::path::Path;

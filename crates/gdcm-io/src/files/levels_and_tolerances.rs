@@ -1,5 +1,9 @@
 //! Tables that the engineer supplies as separate files, for use in any study (M17): level
 //! boundaries for bandwidth and phase delay, and tolerances for time histories.
+//!
+//! A level boundary is a polyline over bandwidth and phase delay, with the level of handling
+//! qualities that is met on it and to its right. A tolerance is the permitted difference between
+//! simulated and flown output.
 
 use std::path::Path;
 

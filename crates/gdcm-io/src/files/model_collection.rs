@@ -1,5 +1,8 @@
 //! Model files, `gdcm-models` 1, written by `gdcm convert` and, for corrected models, by `gdcm
 //! export`. Models in `gdcm-identified` files have the same form and are read here too.
+//!
+//! A [`FoundModel`] is a model outside a dataset, with channels in the file's order and units; its
+//! [`Facts`] are the flight condition and the name that the file states.
 
 use std::io::{self, Write};
 use std::path::Path;

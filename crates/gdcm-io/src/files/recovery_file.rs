@@ -1,4 +1,12 @@
 //! Recovery files: unsaved decisions saved to survive a crash.
+//!
+//! ```text
+//! window opens       claim a name; create its lock file, and lock it          (claim)
+//! decisions change   write the study, and in the lock file its last path      (write)
+//! study is saved     remove the recovery file                                 (clear)
+//! window closes      remove the lock file, unless the recovery file is left   (drop)
+//! next start         recovery files whose lock is free are lost studies       (lost_studies)
+//! ```
 
 use std::fs::{self, File, TryLockError};
 use std::io::{Read, Seek, Write};

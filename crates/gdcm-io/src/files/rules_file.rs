@@ -1,5 +1,9 @@
 //! Rules files, `*.gdcm-rules.json`: rules for reading the models in a folder, which can be reused
 //! for other folders.
+//!
+//! A *pattern* is a regular expression that reads flight condition, role and the like from names; a
+//! *conversion* is a factor between units without a fixed ratio; a *declaration* gives channel
+//! units, factors or signs for a role, a folder or a file, and overrides the files.
 
 use std::collections::BTreeMap;
 use std::io;

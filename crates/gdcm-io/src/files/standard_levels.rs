@@ -2,6 +2,9 @@
 //!
 //! The standard is a public US Army document. Only boundaries read from a publicly available figure
 //! are here; each names its source and the reading error.
+//!
+//! A level boundary is a polyline over bandwidth and phase delay, with the level of handling
+//! qualities that is met on it and to its right.
 
 use std::path::Path;
 

@@ -1,4 +1,7 @@
 //! Models of a dataset file that is read as one of several model files.
+//!
+//! Physics models with moved parameters are the runs and reruns of M18, which belong to no bundle.
+//! A [`FoundModel`] is a model outside a dataset, with the [`Facts`] that its file states.
 
 use std::path::Path;
 

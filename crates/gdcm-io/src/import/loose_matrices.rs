@@ -58,8 +58,8 @@ pub(super) struct LooseMatrix {
 }
 
 impl LooseMatrix {
-    /// Takes the matrix from a file; `None` unless the only variable is an array and the file name
-    /// ends in a matrix letter.
+    /// Takes the matrix from a file (step 1); `None` unless the only variable is an array and the
+    /// file name ends in a matrix letter.
     pub(super) fn from_variables(
         read: FileVariables<'_>,
         file: &str,
@@ -112,7 +112,7 @@ pub(super) fn matrix_letter(stem: &str) -> Option<(char, &str)> {
     Some((letter, before.trim_end_matches(SEPARATORS)))
 }
 
-/// Builds a model from each group of matrices; the group is stated as the model's file.
+/// Builds a model from each group of matrices (step 2); the group is stated as the model's file.
 pub(super) fn models_of_matrices(loose: Vec<LooseMatrix>) -> Found<FoundModel> {
     let mut groups: BTreeMap<String, Vec<LooseMatrix>> = BTreeMap::new();
     for matrix in loose {
@@ -127,8 +127,8 @@ pub(super) fn models_of_matrices(loose: Vec<LooseMatrix>) -> Found<FoundModel> {
     found
 }
 
-/// Recognises the models that a group's matrices form. If recognition finds neither a model nor a
-/// fault (a lone `A.csv`), reports missing matrices.
+/// Recognises the models that a group's matrices form (step 3). If recognition finds neither a
+/// model nor a fault (a lone `A.csv`), reports missing matrices.
 fn models_of_group(group: &str, matrices: &[LooseMatrix]) -> Found<FoundModel> {
     let mut found = Found::default();
     if let Some(fault) = duplicate_matrix(matrices) {

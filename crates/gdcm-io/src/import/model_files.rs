@@ -1,4 +1,8 @@
 //! Reads models from files in any format, and from folders.
+//!
+//! Models among variables are *recognised* by the names of their fields (`recognise`); a matrix
+//! that is alone in its file is *loose*, and set aside until all files are read (`loose_matrices`);
+//! a table of columns is read as frequency responses (`response_tables`).
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -372,6 +376,7 @@ fn read_text(
         .file_stem()
         .and_then(|stem| stem.to_str())
         .unwrap_or_default();
+    // Step 1.
     if let Some((letter, _)) = matrix_letter(stem) {
         let variable = read_matrix(text, &letter.to_string(), budget)?;
         return Ok(TextContents::Variables {
@@ -379,6 +384,7 @@ fn read_text(
             notes: Vec::new(),
         });
     }
+    // Step 2.
     if text.lines().take(HEADING_LINES).any(is_matrix_heading)
         && let Ok(matrices) = read_matrices(text, budget)
     {
@@ -387,6 +393,7 @@ fn read_text(
             notes: matrices.notes,
         });
     }
+    // Step 3.
     let split = split_complex(text, budget)?;
     let table = read_table(split.as_deref().unwrap_or(text), budget)?;
     Ok(TextContents::Table(table))

@@ -1,4 +1,8 @@
 //! Frequency responses in tables of columns.
+//!
+//! A table of columns, such as frequency, magnitude and phase, is recognised by its headings
+//! (`FrequencyColumns`). A heading without a unit is reported as missing, because the engineer can
+//! state it.
 
 use gdcm_model::assembly::found_model::Facts;
 use gdcm_model::assembly::{ChannelLabel, FoundModel};

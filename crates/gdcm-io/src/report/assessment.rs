@@ -1,4 +1,8 @@
 //! Report section on the benefit of the scheduled correction.
+//!
+//! J (M4) is the mismatch between a physics model and the identified representative, averaged over
+//! frequency. The assessed model is the *nominal* one, at the condition's own trim; each
+//! condition's other physics models are at perturbed trims.
 
 use gdcm_method::fidelity::ACCEPTABLE;
 use gdcm_method::schedule::CostChange;

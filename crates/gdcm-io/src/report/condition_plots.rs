@@ -1,4 +1,5 @@
-//! A condition's plots in the report.
+//! A condition's plots in the report. Its *representatives*, one physics and one identified model,
+//! are compared (M5); the corrected responses are those of the physics representative.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -18,7 +19,7 @@ use super::limits::PAIRS_DRAWN;
 use super::page::Page;
 use super::shown_models::models_hidden;
 
-/// Adds Bode plots for the responses in the objective (on-axis; all if none is on-axis).
+/// Adds Bode plots for the on-axis responses (all responses if none is on-axis).
 pub(super) fn add_response_plots(
     page: &mut Page,
     analysis: &Analysis,
@@ -40,7 +41,7 @@ pub(super) fn add_response_plots(
 }
 
 /// Computes a condition's curves and adds its other plots: ratios and phase differences for the
-/// responses in the objective, an overview of all responses, and the poles.
+/// on-axis responses (all if none is on-axis), an overview of all responses, and the poles.
 pub(super) fn add_condition_plots(
     page: &mut Page,
     analysis: &Analysis,
@@ -91,13 +92,13 @@ fn options(source: &ConditionSource<'_>, result: &ConditionAnalysis) -> BodeOpti
     }
 }
 
-/// Returns the responses in the objective, at most [`PAIRS_DRAWN`].
+/// Returns the on-axis responses (all if none is on-axis), at most [`PAIRS_DRAWN`].
 fn drawn_pairs(source: &ConditionSource<'_>) -> Vec<Pair> {
     let measuring = source.study.dataset.measuring_pairs();
     measuring.marked().take(PAIRS_DRAWN).collect()
 }
 
-/// Adds a sentence if there are more responses in the objective than are drawn.
+/// Adds a sentence if there are more on-axis responses (all if none is on-axis) than are drawn.
 fn add_number_drawn(page: &mut Page, source: &ConditionSource<'_>) {
     let measuring = source.study.dataset.measuring_pairs().marked().count();
     if measuring > PAIRS_DRAWN {
@@ -121,7 +122,7 @@ const PAIRS_IN_OVERVIEW: usize = 60;
 const OVERVIEW_PLOTS_IN_A_ROW: usize = 10;
 
 /// Plots ratio and phase difference between the identified representative and the physics models,
-/// for the responses in the objective.
+/// for the on-axis responses (all if none is on-axis).
 fn add_error_plots(page: &mut Page, source: &ConditionSource<'_>, options: &BodeOptions) {
     let id = source.curves.condition.id();
     for pairs in drawn_pairs(source).chunks(PAIRS_IN_A_FIGURE) {

@@ -1,4 +1,10 @@
 //! Condition tables in the report: an overview; channels, responses and models for one condition.
+//!
+//! Each condition's gains and delays are fitted so that the net gain and net delay of every
+//! response come near its G and D (M6); *held* responses are constrained to them, *ignored* ones
+//! are not fitted. Models are *kept* unless the analyst rejects them. A model's *mean distance*, in
+//! √J, is that from the other kept models in its bundle; the *discontinuity ratio* of a physics
+//! model compares its distances with those that the perturbations explain (M5).
 
 use gdcm_method::correction::{Channel, Outcome};
 use gdcm_method::fidelity::SUGGESTION_RATIO;
@@ -124,7 +130,7 @@ const RESPONSE_COLUMNS: [&str; 11] = [
 ];
 
 /// Adds the response table, and the reasons why some responses have no G and no D. If there are
-/// more responses than fit, only those in the objective and the constrained ones are listed.
+/// more responses than fit, only the on-axis and the constrained ones are listed.
 pub(super) fn add_responses(page: &mut Page, study: &Study, result: &ConditionAnalysis) {
     let pairs: Vec<Pair> = study.dataset.on_axis().pairs().collect();
     let measuring = study.dataset.measuring_pairs();

@@ -1,7 +1,8 @@
 //! Report section on the conditions, with cautions and a figure for each; and the appendix with
 //! representatives, gains and delays with their basis, and all plots.
 //!
-//! The tables are in `condition_tables`, the plots in `condition_plots`.
+//! The tables are in `condition_tables`, the plots in `condition_plots`. A *remark* states whether
+//! a request, such as matching the held responses, was fulfilled: good, with a caution, or not.
 
 use gdcm_model::dataset::{BundleKind, Condition, ConditionId};
 use gdcm_model::number_format::{compact, decimals};

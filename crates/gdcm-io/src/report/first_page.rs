@@ -1,4 +1,8 @@
 //! The report's first page: verdict, corrections, signatures.
+//!
+//! *Held* responses are constrained to their G and D (M6); the verdict counts how many are matched,
+//! in gain and in phase. A *net* gain or delay is that of a response: its output's and its input's
+//! together. J (M4) is the mismatch with the identified representative.
 
 use gdcm_method::correction::Channel;
 use gdcm_method::uncertainty::Scalar;
@@ -78,8 +82,8 @@ fn failures(analysis: &Analysis) -> Vec<String> {
     failures
 }
 
-/// Returns the constrained responses; those in the objective if none is constrained. At most
-/// [`PAIRS_SHOWN`].
+/// Returns the constrained responses; if none is constrained, the on-axis ones (all if none is
+/// on-axis). At most [`PAIRS_SHOWN`].
 fn shown_pairs(study: &Study) -> Vec<Pair> {
     let held = study.settings.constrained.marked();
     let mut pairs: Vec<Pair> = held.take(PAIRS_SHOWN).collect();

@@ -3,6 +3,13 @@
 //!
 //! The first page has the verdict, the corrections and the signatures. The contents follow, then the
 //! sections that a reader needs, with figures four to a page, and appendices with the rest.
+//!
+//! ```text
+//! 1  compute what the analysis lacks and several sections show: error bars, the assessments of
+//!    couplings and physics parameters, the requirements
+//! 2  write the page: first page, contents, sections, appendices
+//! 3  title and origin; headings, counts and notes for the export dialog
+//! ```
 
 mod assessment;
 mod condition_plots;
@@ -119,6 +126,7 @@ pub fn compose_report(
     engine: &mut Engine,
     progress: &dyn Progress,
 ) -> Result<Report, Cancelled> {
+    // Step 1.
     let with_bars = uncertainty::with_bars(subject.analysis, engine, progress)?;
     let with_couplings = couplings::with_couplings(with_bars, engine, progress)?;
     let analysis = &physics::with_physics(with_couplings, engine, progress)?;
@@ -128,6 +136,7 @@ pub fn compose_report(
         ..subject
     };
     let requirements = requirements::evaluate(subject, engine, progress)?;
+    // Step 2.
     first_page::add_first_page(&mut page, analysis);
     page.contents_here();
     schedule::add_schedule(&mut page, analysis);
@@ -148,6 +157,7 @@ pub fn compose_report(
     page.appendix("The method");
     page.fixed(include_str!("method.html"));
     provenance::add_models(&mut page, &analysis.study);
+    // Step 3.
     let title = format!(
         "Gain and delay corrections of {}",
         analysis.study.dataset.name()

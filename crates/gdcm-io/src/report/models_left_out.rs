@@ -1,4 +1,7 @@
-//! Report section on the models that do not enter the results, and on suspected models.
+//! Report section on the models that do not enter the results, and on those suggested as outliers.
+//!
+//! A physics model's *discontinuity ratio* compares its distances from the other models with those
+//! that the perturbations explain (M5); a model above the limit is suggested as an outlier.
 
 use gdcm_method::fidelity::SUGGESTION_RATIO;
 use gdcm_model::dataset::{BundleKind, Condition, ModelId};
@@ -12,7 +15,8 @@ use super::page::Page;
 use super::wording::{MISSING, NAMES_SHOWN, counted_are, names};
 
 /// Adds the section on excluded models: rejected ones with the analyst's reasons, those excluded by
-/// the analysis, suspected ones, and those that the analyst chose as representatives.
+/// the analysis, those kept although suggested as outliers, and those that the analyst chose as
+/// representatives.
 pub(super) fn add_models_left_out(page: &mut Page, analysis: &Analysis) {
     page.section("Models left out");
     let rejected = rejected_table(analysis);
@@ -93,8 +97,8 @@ fn rejected_rows(analysis: &Analysis, condition: &Condition, kind: BundleKind, t
     }
 }
 
-/// Describes a condition's models that are excluded by the analysis, suspected but kept, or pinned
-/// by the analyst.
+/// Describes a condition's models that are excluded by the analysis, kept although suggested as
+/// outliers, or pinned by the analyst, that is, chosen as representatives.
 fn left_out_lines(analysis: &Analysis, condition: &Condition) -> Vec<String> {
     let study = &analysis.study;
     let id = condition.id();

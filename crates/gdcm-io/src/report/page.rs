@@ -327,6 +327,7 @@ fn quarter_page(figure: Figure) -> Drawing {
     if height <= FIGURE_PT {
         return figure.drawing(ColumnWidth::Double);
     }
+    // The heights at two aspect ratios give the line on which the wanted height is found.
     let flatter = figure.clone().aspect(0.5 * figure.aspect);
     let [_, half_height] = flatter.drawing(ColumnWidth::Double).size;
     let per_aspect = (height - half_height) / (0.5 * figure.aspect);

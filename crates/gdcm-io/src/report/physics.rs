@@ -1,4 +1,8 @@
 //! Report section on the named physics parameters: verdict, table, benefit (M18).
+//!
+//! The *diagnosis* names the parameters that are wrong, with their probable changes; the section
+//! then gives the changes applied in this report, and their benefit in J. A *rerun* is a physics
+//! model with several parameters moved together, which checks the predicted effect.
 
 use gdcm_model::progress::{Cancelled, Progress};
 use gdcm_study::results::analysis::Analysis;

@@ -1,5 +1,9 @@
 //! Report section on the qualification requirements (M17), with the same values as `gdcm
 //! requirements`.
+//!
+//! Each value is for a condition and a *role*: the physics representative, uncorrected, under the
+//! condition's own correction or under the schedule, or the identified representative. The *grid*
+//! has the verdict on each requirement in each condition.
 
 use std::collections::BTreeMap;
 

@@ -1,5 +1,9 @@
 //! Report section on the schedule over airspeed, and appendix on each condition's channel gains and
 //! delays.
+//!
+//! The schedule is a polynomial in airspeed or a table over it, fitted to the *optima*: the gains
+//! and delays found for each condition alone. The *price* of leads is the gain that they add above
+//! the band, and the frequency above which the model is not valid (M15.6).
 
 use gdcm_method::correction::{Channel, ChannelCorrection};
 use gdcm_method::schedule::{Schedule, ScheduleKind, ScheduleSettings};
@@ -184,8 +188,8 @@ fn not_scheduled(analysis: &Analysis) -> Vec<String> {
     names
 }
 
-/// Returns the responses in the objective (on-axis; all if none is on-axis) and the constrained
-/// responses, at most [`PAIRS_DRAWN`].
+/// Returns the on-axis responses (all if none is on-axis) and the constrained responses, at most
+/// [`PAIRS_DRAWN`].
 fn shown_pairs(study: &Study) -> Vec<Pair> {
     let measuring = study.dataset.measuring_pairs();
     let shown = measuring.map(|pair, measures| *measures || study.settings.constrained[pair]);

@@ -1,4 +1,8 @@
 //! Report section on the uncertainty of the results (M13).
+//!
+//! A *bar* is a result's confidence interval, from the spread over the kept physics models (trim)
+//! and over the identified models (identification). The *evidence* is how much of the scatter of
+//! net gains between conditions both components explain.
 
 use std::sync::Arc;
 

@@ -1,4 +1,9 @@
 //! Corrected models as arrays for NumPy.
+//!
+//! A correction part (gains, delays, leads, couplings) comes from the schedule, from the
+//! condition's own correction, or is missing; `contains_gains` and the like state this source
+//! for each model, `contains_physics` the changes of the physics parameters (M18), and
+//! `contains_left_out` the omitted parts.
 
 use gdcm_model::dataset::Dataset;
 

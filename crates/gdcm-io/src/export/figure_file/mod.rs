@@ -1,5 +1,5 @@
-//! Figures as files: SVG, PNG, PDF, and their data as CSV. The bytes depend only on the figure and
-//! its width.
+//! Figures as files: SVG, PNG, PDF, and their data as CSV, with a row for each point. The bytes
+//! depend only on the figure and its width.
 
 use std::io::{self, Write};
 use std::iter::once;

@@ -1,4 +1,8 @@
 //! A lookup table as text.
+//!
+//! A [`BreakpointTable`] has a row for each breakpoint (airspeed and, if scheduled, second
+//! variable), and a column for each channel's gain, delay and lead, and for each entry of the
+//! mixing. The feedback does not depend on airspeed, and is therefore in the comment lines.
 
 use std::fmt::Write;
 

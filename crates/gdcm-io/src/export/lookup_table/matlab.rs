@@ -1,4 +1,18 @@
-//! A lookup table as a variable for MATLAB.
+//! A lookup table as a variable for MATLAB, the struct `gdcm_table`.
+//!
+//! ```text
+//! about, contains, interpolation                    heading, correction parts, how to interpolate
+//! airspeed_kt, altitude_ft or mass_kg               a row for each breakpoint
+//! inputs, outputs                                   channel names
+//! input_gains, input_delays_s                       breakpoints x inputs; likewise for outputs
+//! input_lead_numerators_s                           with leads
+//! input_gain_error_percent, input_delay_error_ms    1 x inputs: maximum deviation of the linear
+//!                                                   interpolation from the schedule
+//! mixing, mixing_of                                 breakpoints x entries, "receiver from sender"
+//! feedback                                          inputs x outputs, the same at all airspeeds
+//! lead_order, lead_lag_s, not_valid_above_rad_s     lead filters, and their limit
+//! input_gain_above_band_db                          1 x inputs: gain that leads add above the band
+//! ```
 
 use gdcm_method::couplings::CouplingMatrices;
 
@@ -7,10 +21,8 @@ use crate::export::matlab_values::{Fields, cell_of_texts, column, contained_part
 use crate::formats::variables::{Value, Variable};
 
 impl BreakpointTable<'_> {
-    /// Returns the variable `gdcm_table`: the breakpoints (airspeed and, if scheduled, second
-    /// variable); for inputs and outputs, matrices with gains, delays \[s\] and lead numerators
-    /// \[s\], a row for each breakpoint and a column for each channel, with their maximum
-    /// deviations; couplings and lead filters, if there are any; and a description.
+    /// Returns the variable `gdcm_table`. Fields for the second variable, couplings and leads exist
+    /// only if the schedule has them.
     pub(super) fn variable(&self) -> Variable {
         let scheduled = &self.scheduled;
         let mut fields = Fields::default();

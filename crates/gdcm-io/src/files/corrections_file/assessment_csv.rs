@@ -1,4 +1,9 @@
 //! `assessment.csv`: a row for each condition and response.
+//!
+//! `G` and `D` are the gain and the delay by which the identified representative differs from the
+//! physics representative (M6); `J` is the mismatch of the nominal model with the identified
+//! representative (M4). A *held* response is constrained to its G and D; a *held-out* condition is
+//! assessed, but not used to fit the schedule.
 
 use std::collections::BTreeSet;
 use std::io::{self, Write};

@@ -1,4 +1,8 @@
 //! The part of `corrections.json` about a condition.
+//!
+//! A condition has a bundle of physics models and a bundle of identified models; their
+//! *representatives* are compared (M5). Models are *rejected* by the analyst, or *set aside* by
+//! the analysis. `docs/reference/corrections.md` describes the keys.
 
 use serde_json::{Map, Value, json};
 
@@ -104,7 +108,8 @@ fn caution_words(names: &LabelledAnalysis<'_>, caution: &Caution) -> String {
     caution_text(caution, |pair| names.analysis.study.dataset.pair_name(pair))
 }
 
-/// Returns suspected model faults, followed by the cautions about the results and about leads.
+/// Returns channels with an apparent difference in sign or unit between the bundles, followed by
+/// the cautions about the results and about leads.
 fn cautions(names: &LabelledAnalysis<'_>, result: &ConditionAnalysis) -> Value {
     let study = &names.analysis.study;
     let mut cautions = Vec::new();

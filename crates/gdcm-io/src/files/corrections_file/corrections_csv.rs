@@ -1,4 +1,8 @@
 //! `corrections.csv`: a row for each condition and channel.
+//!
+//! A *signed delay* `tau` is a channel's delay or, if negative, its lead, which a filter
+//! provides (M15). `u_…` are standard deviations due to the choice of the physics model and to
+//! the identification (M13).
 
 use std::collections::BTreeSet;
 use std::io::{self, Write};

@@ -1,4 +1,5 @@
-//! `corrections.json`, which contains all analysis results.
+//! `corrections.json`, which contains all analysis results. The files beside this one write its
+//! parts; `docs/reference/corrections.md` describes the keys.
 
 use std::collections::BTreeSet;
 

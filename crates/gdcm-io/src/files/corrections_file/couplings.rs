@@ -1,5 +1,11 @@
-//! The part of `corrections.json` about couplings in the physics models, and about their benefit
-//! (M16).
+//! The part of `corrections.json` about couplings in the physics models, and about their
+//! benefit (M16).
+//!
+//! Couplings are an input mixing, which depends on airspeed, and a feedback from outputs to
+//! inputs, which does not; both are fitted to several conditions together. The benefit is mean
+//! J without and with them, on-axis and off-axis (`others`): under each condition's own
+//! correction, under the schedule, and in each condition with everything fitted to the others
+//! (`left_out`).
 
 use nalgebra::{DMatrix, Scalar};
 use serde_json::{Value, json};

@@ -1,4 +1,9 @@
 //! A condition's results as cells for the CSV files.
+//!
+//! A *bar* is a scalar result with its uncertainty (M13); its variance has a component from the
+//! choice of the physics model (trim) and one from the identification. The *price* of leads is
+//! the gain that they add above the band, and the frequency above which the model is not valid
+//! (M15.6).
 
 use std::collections::BTreeSet;
 

@@ -1,4 +1,5 @@
-//! Analysis values as JSON, labelled with the dataset's channel names.
+//! Analysis values as JSON, labelled with the dataset's channel names. A response has an output and
+//! an input; gains, delays and leads belong to single channels.
 
 use serde_json::{Map, Value, json};
 

@@ -1,4 +1,10 @@
 //! The part of `corrections.json` about named physics parameters, and `physics.csv` (M18.5).
+//!
+//! A physics parameter, such as a moment of inertia, moves the physics models; `z` is its
+//! change in plausible standard deviations. The diagnosis fits `z` to all conditions, and
+//! *names* a parameter as wrong if the evidence suffices; otherwise `why_not` gives the reason.
+//! A *run* is a physics model with a single parameter moved, from which its effect is learned;
+//! a *rerun* has several moved together, and checks the predicted effect.
 
 use std::collections::BTreeSet;
 use std::io::{self, Write};

@@ -1,4 +1,8 @@
 //! The part of `corrections.json` about the schedule.
+//!
+//! The coefficients of a channel are those of a polynomial in the scaled airspeed, or the
+//! values in a table over airspeed (M11). The *second variable* is altitude or mass, which adds
+//! a slope per channel (M13.7); a *signed delay* is a delay or, if negative, a lead (M15).
 
 use serde_json::{Value, json};
 

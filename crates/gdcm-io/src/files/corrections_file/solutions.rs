@@ -1,5 +1,12 @@
 //! The part of `corrections.json` about the gain fit and the delay fit: objective, optimality
 //! proof, and the unmatched responses with an explanation.
+//!
+//! A constrained response is *unmatched* if its G or D (`wanted`) is infeasible; it is then
+//! constrained to a feasible `target`. A *conflict* is a minimal infeasible set of constrained
+//! responses and bounds; a *loop* of responses *agrees* if it deviates from consistency by no
+//! more than the tolerance. A *remedy* is a single change that makes all constraints feasible,
+//! and a *sensitivity* is the change in the objective if a constrained value or a bound is
+//! raised.
 
 use serde_json::{Value, json};
 
@@ -59,6 +66,8 @@ pub(super) fn delay_solution(names: &LabelledAnalysis<'_>, result: &ConditionAna
         });
         unmatched.push(names.response_entries(entry.pair, figures));
     }
+    // The slope of the objective along the directions that the constraints permit: zero proves the
+    // minimum, because the problem is convex.
     let kkt_residual_s = if delays.quantity == Quantity::SignedDelay {
         json!(kkt_residual(&result.delay_problem, delays))
     } else {
@@ -122,6 +131,7 @@ impl ConflictFigures {
                 upper: Some(upper),
                 ..Self::default()
             },
+            // The lower bound of delays is fixed, so that the entries need a lead of `-asked`.
             ConflictKind::BelowLower {
                 asked, lower: None, ..
             } => Self {

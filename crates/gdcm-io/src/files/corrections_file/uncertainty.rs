@@ -1,4 +1,10 @@
 //! The part of `corrections.json` about uncertainty in the results (M13).
+//!
+//! A *bar* is a scalar result, such as a net gain, with its uncertainty; its standard deviations
+//! `u_physics` and `u_identification` are due to the unknown trim and to the identified models, and
+//! the inner interval has only the latter. `p_holm` is a probability after Holm's correction for
+//! several tests. *Scatter* is the variance of net gains between conditions, split into the part
+//! that the bars let expect and the rest; the *second variable* is altitude or mass.
 
 use serde_json::{Map, Value, json};
 

@@ -1,5 +1,5 @@
 //! Conversion between dataset files and datasets: JSON text becomes a draft, and a checked dataset
-//! becomes text.
+//! becomes text. A [`DatasetDraft`] is a dataset before its checks.
 
 use gdcm_model::dataset::condition::{ConditionRecord, FlightState, RecordKind};
 use gdcm_model::dataset::dataset_draft::{ConditionDraft, DatasetDraft, ModelDraft};

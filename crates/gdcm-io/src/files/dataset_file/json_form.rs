@@ -1,4 +1,9 @@
 //! JSON objects in a dataset file.
+//!
+//! Types named `…Text` have the file's keys; `conversion` and `model_conversion` turn them into
+//! drafts, which are then checked. Lists have limits, beyond which reading ends. A *run* is a
+//! physics model with a single named parameter moved, a *rerun* one with several moved together
+//! (M18).
 
 use std::collections::BTreeMap;
 

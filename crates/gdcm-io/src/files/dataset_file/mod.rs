@@ -1,4 +1,8 @@
 //! Dataset files, `*.json` and `*.json.gz`.
+//!
+//! A dataset holds, for each flight condition, a bundle of physics models, a bundle of identified
+//! models, and flight records. A *draft* is a dataset before its checks; *cautions* are
+//! irregularities in the file that do not prevent its use.
 
 mod conversion;
 mod json_form;

@@ -1,4 +1,8 @@
 //! Converts between models in files and in datasets.
+//!
+//! A *bundle* holds a condition's physics models, or its identified models. A physics model with
+//! moved parameters is no bundle member: in a *run*, a single parameter is moved, in a *rerun*,
+//! several together (M18).
 
 use nalgebra::DMatrix;
 

@@ -1,4 +1,9 @@
 //! `requirements.csv`: a row for each value.
+//!
+//! A *finding* holds the values for one of four questions (bandwidth, modes, summary costs, time
+//! histories) in a condition. Its *role* is the model version: the physics representative,
+//! uncorrected, under the condition's own correction or under the schedule, or the identified
+//! representative (M17).
 
 use std::io::{self, Write};
 

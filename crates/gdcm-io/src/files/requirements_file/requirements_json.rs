@@ -1,5 +1,10 @@
 //! `requirements.json`: the findings, serialised as they are, and a requirement grid per role.
 //! Sentences replace the codes for missing values; cautions get a sentence, bandwidths their level.
+//!
+//! A *finding* holds the values for one of four questions (bandwidth, modes, summary costs, time
+//! histories) in a condition. The *grid* has the value and the verdict for each requirement and
+//! condition, for the physics model alone and for the corrected model in a *role*: under the
+//! condition's own correction, or under the schedule (M17).
 
 use std::collections::BTreeMap;
 use std::io;

@@ -1,5 +1,9 @@
 //! Conversion between study files and decisions: a study becomes text, and text becomes decisions
 //! that are checked against the dataset.
+//!
+//! *Decisions* are the settings, and for each condition the rejected models, the representatives,
+//! and whether it is scheduled or held out. A *variant* is a named alternative to them; *adopted*
+//! models are identified models that replace the dataset's in a condition.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;

@@ -1,4 +1,7 @@
 //! JSON objects in a study file.
+//!
+//! Types named `…Text` have the file's keys; `conversion` turns them into decisions. Lists have
+//! limits, beyond which reading ends.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,4 +1,7 @@
 //! Study files, `*.gdcm-study.json`: a study's decisions, with a reference to its dataset.
+//!
+//! The decisions are kept by names, so that they can be applied to a dataset that has changed; an
+//! [`Inventory`] of the dataset, stored in the study, shows the changes.
 
 mod conversion;
 mod json_form;
@@ -81,12 +84,16 @@ pub(crate) fn study_from(
     moved: Option<&Path>,
     budget: &ReadingBudget<'_>,
 ) -> Result<OpenedStudy, FileError> {
+    // Step 1.
     let (text, unknown) = FORMAT.decode::<StudyText>(source.text(), path, budget)?;
+    // Step 2.
     let mut loaded = load_referenced(&text.dataset, path, moved, budget)?;
     let DatasetReference { sha256, holds, .. } = text.dataset.clone();
+    // Step 3.
     let decisions =
         decisions_of(text, &loaded.dataset).map_err(|error| FileError::content(path, error))?;
     let (study, not_applied) = decisions.applied_to(loaded.dataset.clone());
+    // Step 4.
     let mut differences = match holds {
         _ if sha256 == loaded.sha256 => Vec::new(),
         Some(inventory) => inventory.differences(&loaded.dataset),

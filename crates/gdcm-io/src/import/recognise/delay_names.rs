@@ -1,4 +1,5 @@
-//! Names of delay fields: which signals a field delays, and in which unit.
+//! Names of delay fields: which signals a field delays, and in which unit. Names are compared
+//! *folded*, that is, without case, marks and blanks: `Input_Delay` becomes `inputdelay`.
 
 use gdcm_model::names::channel_alias::folded_name;
 

@@ -1,4 +1,7 @@
 //! A model's sample time and delays, in seconds.
+//!
+//! A [`Record`] is a group of fields that may form a model, such as a struct; it marks the fields
+//! that are used.
 
 use nalgebra::DMatrix;
 
@@ -41,6 +44,7 @@ pub(super) fn timing_of(
     outputs: usize,
     inputs: usize,
 ) -> Result<NotedTiming, RecognitionFault> {
+    // Steps 1 and 2.
     refuse_other_time_units(record)?;
     let mut reading = DelayReading {
         sample_time_s: sample_time_of(record)?,
@@ -52,6 +56,7 @@ pub(super) fn timing_of(
         response_delays: None,
         notes: Vec::new(),
     };
+    // Step 3; level 0 is the record itself.
     for (level, record) in record.with_outer().enumerate() {
         for field in record.delay_fields() {
             if !field.is_nonzero() {
@@ -66,6 +71,7 @@ pub(super) fn timing_of(
             record.mark_used(field.name);
         }
     }
+    // Step 4 adds the split delays.
     Ok(reading.finish())
 }
 

@@ -1,7 +1,8 @@
 //! A model's flight condition and origin, from the fields beside it and in the enclosing records.
 //!
-//! A quantity may be given as a field (`airspeed_kt`) or in a struct (`trim.airspeed_kt`), beside the
-//! model or in a record that encloses it. A list beside an array of models has an entry for each.
+//! A quantity may be given as a field (`airspeed_kt`) or in a struct (`trim.airspeed_kt`), beside
+//! the model or in a [`Record`] (a group of fields) that encloses it. A list beside an array of
+//! models has an entry for each.
 
 use std::collections::BTreeMap;
 

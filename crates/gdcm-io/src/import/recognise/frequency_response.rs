@@ -1,4 +1,16 @@
 //! Recognises models given by measured frequency responses.
+//!
+//! ```text
+//! 1  delays beside the response: a fault, because it already contains them  (refuse_delays)
+//! 2  frequencies in rad/s                                                   (Frequencies::read)
+//! 3  complex values, or real and imaginary parts                            (StoredResponse::find)
+//! 4  which index counts the outputs, the inputs and the frequencies         (ResponseLayout::new)
+//! 5  coherence; all values as outputs x inputs x frequencies                (coherence_of)
+//! 6  origin, labels and flight condition, from the fields beside the response
+//! ```
+//!
+//! A [`Record`] is a group of fields that may form a model, such as a struct; it marks the fields
+//! that are used. Coherence γ² is the share of the output power that the input explains.
 
 use gdcm_model::assembly::FoundModel;
 use gdcm_model::dataset::dataset_draft::{ModelDraft, ResponseArray, ResponseDraft};
@@ -53,10 +65,15 @@ pub(super) fn response(
     record: &Record<'_>,
     variable: &str,
 ) -> Result<FoundModel, RecognitionFault> {
+    // Step 1.
     refuse_delays(record)?;
+    // Step 2.
     let frequencies = Frequencies::read(record)?;
+    // Step 3.
     let stored = StoredResponse::find(record)?;
+    // Step 4.
     let layout = ResponseLayout::new(stored.shape, frequencies.omega.len())?;
+    // Step 5.
     let coherence = coherence_of(record, &stored, &layout)?;
     let response = ResponseDraft {
         re: layout.ordered("response", stored.re)?,
@@ -66,7 +83,7 @@ pub(super) fn response(
         valid_bands: None,
         estimate: Estimate::default(),
     };
-    // A measured response is never a physics model, whatever role the record gives.
+    // Step 6. A measured response is never a physics model, whatever role the record gives.
     let origin = match origin_of(record) {
         Origin::Identified { method, order } => Origin::Identified { method, order },
         Origin::Nominal { .. } | Origin::Perturbed { .. } => Origin::Identified {

@@ -1,4 +1,7 @@
 //! Channel and state names, and channel units, given beside a model.
+//!
+//! A [`Record`] is a group of fields that may form a model, such as a struct; it marks the fields
+//! that are used.
 
 use gdcm_model::assembly::ChannelLabel;
 use gdcm_model::dataset::channel::ChannelSide;

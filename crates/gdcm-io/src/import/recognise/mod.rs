@@ -4,6 +4,8 @@
 //! response over frequencies; numerators and denominators; zeros, poles and gains. The group is a
 //! struct, a MATLAB object, or a file's variables. Structs and objects may be inside structs, cells
 //! and arrays.
+//!
+//! Such a group is a `Record` (`record.rs`), whether it holds a model or a flight record.
 
 mod delay_names;
 mod delays;
@@ -65,11 +67,14 @@ pub(crate) fn recognise(
     budget: &ReadingBudget<'_>,
 ) -> Result<Found<FoundModel>, VariableFault> {
     let read = |record: &Record<'_>, variable: &str| read_models(record, variable, pages_first);
+    // Step 1.
     let mut found = search(variables, budget, &read)?;
+    // Step 2.
     let suffixed = suffixed_models(variables, &read, budget)?;
     // Models with suffixes come first: their matrices are variables of the file itself.
     found.items.splice(0..0, suffixed.found.items);
     found.faults.splice(0..0, suffixed.found.faults);
+    // Step 3.
     if found.items.is_empty() && found.faults.is_empty() {
         found.unused.clear();
         return Ok(found);

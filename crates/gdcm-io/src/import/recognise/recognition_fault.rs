@@ -1,4 +1,4 @@
-//! Reasons why a model or a record among variables cannot be read.
+//! Reasons why a model or a flight record among variables cannot be read.
 
 use std::fmt::{self, Display, Formatter};
 

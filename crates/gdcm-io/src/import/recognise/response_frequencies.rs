@@ -1,4 +1,7 @@
 //! A measured response's frequencies: their field and their unit.
+//!
+//! A [`Record`] is a group of fields that may form a model, such as a struct; it marks the fields
+//! that are used.
 
 use std::f64::consts::TAU;
 

@@ -94,21 +94,24 @@ pub(crate) fn search<T>(
         recognise,
         budget,
     };
+    // Step 1.
     let whole = Rc::new(Record::from_variables(variables));
     search.try_record(&whole, "")?;
     let is_file_no_record = search.found.has_nothing();
     let mut without_results = BTreeSet::new();
+    // Step 2.
     for variable in variables {
         if !search.descend(&variable.name, &variable.value, DEEPEST, &whole)? {
             without_results.insert(variable.name.as_str());
         }
     }
+    // Step 3 for the variables; fields inside them are listed by `note_unused`.
     let mut found = search.found;
     found
         .unused
         .splice(0..0, unused_among(&whole, &without_results));
-    // Unless the variables together form a record, the file's arrays were not recognised even if
-    // other variables were.
+    // Step 4. Unless the variables together form a record, the file's arrays were not recognised
+    // even if other variables were.
     let is_nothing_found = found.has_nothing();
     for variable in variables {
         let is_array = matches!(variable.value, Value::Array(_));

@@ -1,5 +1,9 @@
 //! Recognises models given by matrices: `x' = A x + B u`, `y = C x + D u`, or with `E x'` on the
 //! left.
+//!
+//! A [`Record`] is a group of fields that may form a model, such as a struct; it marks the fields
+//! that are used. A *page* is a matrix in an array of several, which belongs to one of as many
+//! models.
 
 use nalgebra::DMatrix;
 
@@ -170,12 +174,14 @@ fn state_space(
     page: Page,
     read: ReadMatrix<'_>,
 ) -> Result<FoundModel, RecognitionFault> {
+    // Step 1.
     let a = required_matrix(record, MatrixName::A, read)?;
     let b = required_matrix(record, MatrixName::B, read)?;
     let c = required_matrix(record, MatrixName::C, read)?;
     at_most(a.nrows().max(a.ncols()), "states", "A")?;
     at_most(b.ncols(), "inputs", "B")?;
     at_most(c.nrows(), "outputs", "C")?;
+    // Step 2.
     let mut notes = Vec::new();
     let mut d = DMatrix::zeros(c.nrows(), b.ncols());
     match optional_matrix(record, MatrixName::D, read)? {
@@ -183,11 +189,14 @@ fn state_space(
         Some(given) => d = given,
         None => notes.push(ReadingNote::NoD),
     }
+    // Step 3.
     let (a, b) = match optional_matrix(record, MatrixName::E, read)? {
         Some(e) if !e.is_empty() => solve_descriptor(e, a, b)?,
         _ => (a, b),
     };
+    // Step 4.
     check_shapes(&a, &b, &c, &d)?;
+    // Step 5.
     let timing = timing_of(record, c.nrows(), b.ncols())?;
     let mut model = build_model(record, variable, page, [a, b, c, d], timing.timing)?;
     notes.extend(timing.notes);

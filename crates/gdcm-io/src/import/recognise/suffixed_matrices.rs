@@ -59,6 +59,7 @@ pub(super) fn suffixed_models(
         }
         budget.work(STEPS * variables.len() as u64, "")?;
         fields.extend(fields_beside(variables, suffix, &delays));
+        // Step 4.
         let record = Record::from_fields(fields.into_iter()).shared();
         let name = suffix.trim_start_matches('_');
         models

@@ -27,7 +27,8 @@ pub(super) fn is_transfer_function(record: &Record<'_>) -> bool {
 /// A = [-a_1 ... -a_n; I 0],   B = [1; 0; ...; 0],   C = [c_1 ... c_n],   D = d
 /// ```
 ///
-/// For a numerator `b_0 s^n + ... + b_n`, `d = b_0` and `c_k = b_k - b_0 a_k`.
+/// For a numerator `b_0 s^n + ... + b_n`, `d = b_0` and `c_k = b_k - b_0 a_k`. The states of one
+/// response follow those of another; `B` and `C` connect them to their input and their output.
 pub(super) fn transfer_function(
     record: &Record<'_>,
     variable: &str,

@@ -1,4 +1,7 @@
 //! Flight records from vectors and matrices of equal length.
+//!
+//! A [`Record`] is a group of fields, such as a struct, that may hold a flight record; it marks the
+//! fields that are used.
 
 use std::collections::BTreeMap;
 
@@ -45,12 +48,14 @@ struct RecordLength {
 ///    columns: `None`.
 /// 4. Columns of a single matrix without labels are numbered.
 pub(super) fn array_columns(record: &Record<'_>, variable: &str) -> Option<Columns> {
+    // Step 1.
     let is_model = ["A", "B", "C"]
         .iter()
         .all(|letter| record.exact(letter).is_some());
     if is_model {
         return None;
     }
+    // Step 2.
     let sample_time_s = sample_time(record);
     let RecordLength { rows, is_timed } = record_length(record)?;
     let fewest = if is_timed || sample_time_s.is_some() {
@@ -61,10 +66,12 @@ pub(super) fn array_columns(record: &Record<'_>, variable: &str) -> Option<Colum
     if rows < fewest {
         return None;
     }
+    // Step 3.
     let mut arrays = LongArrays::find(record, rows);
     if arrays.columns.len() < 2 {
         return None;
     }
+    // Step 4.
     if !arrays.have_names {
         for (index, column) in arrays.columns.iter_mut().enumerate() {
             column.name = format!("column {}", index + 1);

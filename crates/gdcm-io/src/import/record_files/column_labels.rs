@@ -1,5 +1,8 @@
 //! Labels of the columns in a field: names, units, and whether they are inputs or outputs, from the
 //! fields beside it.
+//!
+//! A [`Record`] is a group of fields, such as a struct, that may hold a flight record; it marks the
+//! fields that are used. Names of fields are compared folded: without case, marks and blanks.
 
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::names::channel_alias::folded_name;
@@ -101,6 +104,7 @@ impl ColumnLabels {
             }),
             None => None,
         };
+        // Step 1.
         let own_names = [
             format!("{name}names"),
             format!("{name}labels"),
@@ -109,6 +113,7 @@ impl ColumnLabels {
         let own_units = [format!("{name}units")];
         let mut names = list_beside(record, &own_names, count);
         let mut units = list_beside(record, &own_units, count);
+        // Steps 2 and 3.
         if let Some(shared) = shared {
             names = names.or_else(|| list_beside(record, shared.names, count));
             units = units.or_else(|| list_beside(record, shared.units, count));

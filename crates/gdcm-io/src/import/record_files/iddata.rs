@@ -100,10 +100,12 @@ fn experiment(
     index: usize,
     variable: String,
 ) -> Result<Columns, RecognitionFault> {
+    // Step 1.
     let sample_count = match samples_of(output, None) {
         Some(samples) => Some(samples.rows),
         None => return Err(RecognitionFault::NoOutputData),
     };
+    // Step 2.
     let mut columns = Vec::new();
     if let Some(instants) = value_for_experiment(record, &["SamplingInstants"], index)
         && let Some(stamps) = samples_of(instants, sample_count)
@@ -116,14 +118,17 @@ fn experiment(
             columns.push(column);
         }
     }
+    // Step 3.
     columns.extend(side_columns(record, &INPUT_FIELDS, index, sample_count));
     columns.extend(side_columns(record, &OUTPUT_FIELDS, index, sample_count));
+    // Step 4.
     if columns
         .iter()
         .any(|column| Some(column.values.len()) != sample_count)
     {
         return Err(RecognitionFault::SampleCounts);
     }
+    // Step 5.
     let step = value_for_experiment(record, &["Ts", "tsam"], index).and_then(first_number_of);
     Ok(Columns {
         sample_time_s: step.filter(|step| *step > 0.0),

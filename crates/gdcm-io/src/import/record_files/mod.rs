@@ -1,11 +1,16 @@
 //! Reads flight records from files: text tables, MATLAB, NumPy, JSON, logs, and archives of these.
 //!
 //! ```text
-//! bytes -> format, from the first bytes
+//! bytes -> format, from the first bytes                                        (formats)
 //!       -> a table with columns, or variables, or files (text, mat, mat73, npy, zip, JSON)
-//!       -> columns with equal lengths: vectors and matrices, structs, timetables, iddata
-//!       -> records: a table is split by a column that numbers them, or where time restarts
+//!       -> columns with equal lengths: iddata, timetables, structs, vectors,   (read_columns,
+//!          matrices; or the columns of a text                                   text_columns)
+//!       -> records: a table is split by a column that numbers them,            (add_table)
+//!          or where time restarts
 //! ```
+//!
+//! A *topic* is a table whose samples have their own times, such as a message in a log; topics are
+//! joined to a record by these times.
 
 mod array_columns;
 mod column_labels;

@@ -25,11 +25,13 @@ pub(super) fn text_columns(
     text: &str,
     budget: &ReadingBudget<'_>,
 ) -> Result<Vec<Columns>, VariableFault> {
+    // Step 1.
     let first_fault = match whole_text_columns(text, budget) {
         Ok(columns) => return Ok(vec![columns]),
         Err(fault) if is_of_the_text(&fault) => fault,
         Err(fault) => return Err(fault),
     };
+    // Step 2.
     let sections = sections(text);
     let count = sections.len();
     if count <= 1 {

@@ -1,9 +1,11 @@
-//! Sentences about constrained responses that miss their targets, the conflicts that cause this, and
-//! the remedies. The facts are in [`Unmatched`], [`ConflictKind`] and [`Remedy`].
+//! Sentences about constrained responses whose gain or delay cannot be reached, the conflicts that
+//! cause this, and the remedies. The facts are in [`Unmatched`], [`ConflictKind`] and [`Remedy`].
 //!
 //! A response is *held* if it is constrained: the product of its channels' gains k (the sum of
-//! their delays τ) must equal its target. Constrained responses that share channels can form a
-//! *loop*, in which each target follows from the others. Lead filters are limited by their greatest
+//! their delays τ) must equal its G (its D). In [`Unmatched`], `delta` is this wanted value, `target`
+//! the nearest feasible one, at which the response is held instead, and `excess` how much `target`
+//! exceeds `delta`: positive for too much gain or delay. Constrained responses that share channels can form a
+//! *loop*, in which each wanted value follows from the others. Lead filters are limited by their greatest
 //! gain `R_max` and the factor `n` of their lag (M15.3). `told_apart` formats two numbers with
 //! enough digits to distinguish them, `telling` a small one with more digits, so that it differs
 //! from 0.
@@ -96,8 +98,8 @@ fn lead_miss_text(miss: &Unmatched, pair: &str, omega_top: f64) -> String {
     )
 }
 
-/// Describes a delay's deviation: a needed lead, if the response conflicts with nothing else; else
-/// too much delay; else too little.
+/// Describes a delay's deviation: a needed lead, if the only conflict is that the response's own
+/// delay would be negative; else too much delay (`excess` is positive); else too little.
 fn delay_miss_text(miss: &Unmatched, pair: &str, omega_top: f64) -> String {
     let excess_ms = 1e3 * miss.excess;
     let size_ms = telling(excess_ms.abs(), 1);

@@ -1,5 +1,8 @@
 //! The verdict on the constrained responses, in words short enough for the narrowest window. The
 //! window, the printed summary and the report use the same words.
+//!
+//! A response is *held* if it is constrained, and *matched* if its channels give it the G (eq. (5))
+//! or the D (eq. (9)) that it needs. J is the mismatch cost (M4).
 
 use gdcm_model::dataset::{ConditionId, Dataset};
 use gdcm_model::number_format::{NO_VALUE, counted, with_minus_sign};

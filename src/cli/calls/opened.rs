@@ -1,4 +1,7 @@
-//! Datasets and studies in memory: read from files, assembled, or made from text.
+//! Datasets and studies that the callers of this module (the Python package) hold in memory: read
+//! from files, assembled, or made from text.
+//!
+//! [`called`] runs each function, and collects its messages for the caller instead of printing them.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -30,7 +33,8 @@ use crate::cli::{chosen_example, existing, open};
 pub struct OpenedData {
     pub(super) study: Study,
     pub(super) loaded: LoadedDataset,
-    /// Whether the dataset is in the file that its origin names, or in the program.
+    /// Whether the dataset can be loaded again from its origin: a file, or an example in the
+    /// program.
     pub(super) is_stored: bool,
 }
 
@@ -92,7 +96,8 @@ impl OpenedData {
         }
     }
 
-    /// Takes a dataset that is not in a file; `name` is its source in messages.
+    /// Takes a dataset that is not in a file; `name` is its source in messages. Its text is read
+    /// back, so that it has the checks and the checksum of a dataset file.
     pub(super) fn from_dataset(dataset: &Dataset, name: &str) -> Result<Self, Failure> {
         let text = dataset_text(dataset)?;
         let loaded = load_dataset_bytes(&text, DatasetOrigin::File(PathBuf::from(name)))?;
@@ -145,7 +150,7 @@ impl OpenedData {
     /// and input. Delays are exact.
     ///
     /// # Errors
-    /// The dataset has no such model.
+    /// The dataset has no such model; the error names the option `--model` of the command line.
     pub fn response(
         &self,
         condition: i64,
@@ -179,6 +184,10 @@ impl OpenedData {
 }
 
 /// Saves a study, and beside it its dataset if that is not yet in a file.
+///
+/// The dataset file gets the dataset as loaded, without adopted models and reversed signs: these are
+/// decisions, which the study file holds. It is read back, because the study file states the path
+/// and the checksum of that file.
 fn save(
     study: &Study,
     loaded: &LoadedDataset,
@@ -227,8 +236,8 @@ pub struct Assembled {
     pub rules: Vec<u8>,
 }
 
-/// Assembles a dataset from model files. The option `--out` is required but has no effect: nothing
-/// is written.
+/// Assembles a dataset from model files. The options are those of `gdcm assemble`; `--out`, which it
+/// requires, has no effect here: nothing is written.
 ///
 /// # Errors
 /// The files cannot be read, or the rules are incomplete; the errors among the messages then list

@@ -33,8 +33,7 @@ use super::{CancellationOnly, ReportSubject};
 const COLUMNS: usize = 9;
 /// Columns that each part of the summary table repeats: condition, airspeed and model.
 const SUMMARY_HEADS: usize = 3;
-/// Maximum number of other columns in the summary table: two fewer than [`COLUMNS`], because it
-/// repeats two more columns than a table that repeats only its first.
+/// Maximum number of other columns in the summary table.
 const SUMMARY_COLUMNS: usize = COLUMNS - 2;
 /// Maximum number of plots per row in the figure of bandwidths.
 const BANDWIDTH_COLUMNS: usize = 4;

@@ -1,7 +1,8 @@
 //! Distances between the models in a bundle (M5).
 //!
 //! ```text
-//! d(a, b) = sqrt(mean over the compared responses of J(a against b)),   J with the mean over frequency
+//! d(a, b) = sqrt(mean over the compared responses of J),   J with the mean over frequency
+//! J = J(a against b); if either has coherence, (J with the weights of a + J with the weights of b) / 2
 //! ```
 //!
 //! A *bundle* is a condition's physics models, or its identified models; J is the cost of the
@@ -46,9 +47,9 @@ impl ComparedModel<'_> {
 /// Computes the distances from model `a` to each later model, `d(a, a + 1), d(a, a + 2), ...`; the
 /// calls for different `a` are independent tasks.
 ///
-/// J is weighted by the reference model's coherence (M4a), and in a bundle either model can be the
-/// reference: if either has coherence, J is the mean over both directions, so that a distance does
-/// not depend on the models' order. A response without any weighted frequency is compared over all
+/// J does not depend on which model is the reference, but its coherence weights do (M4a), and in a
+/// bundle either model can be the reference: if either has coherence, J is computed with the weights
+/// of each and averaged, so that a distance does not depend on the models' order. A response without any weighted frequency is compared over all
 /// frequencies, so that poorly measured models do not appear similar.
 pub fn distances_from(a: usize, models: &[ComparedModel<'_>], compared: &[Pair]) -> Vec<f64> {
     models[a + 1..]

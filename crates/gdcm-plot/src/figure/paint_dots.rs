@@ -32,7 +32,8 @@ struct Label<'m> {
 /// Paints the dots whose centres are in the frame, without clipping them, and the labels beside
 /// dots and brackets.
 ///
-/// 1. Paint the dots; collect the labels of dots and brackets.
+/// 1. Paint the dots; collect the labels of dots and brackets. A dot without text is kept as a label
+///    without words, because it is an obstacle to the others.
 /// 2. Place the labels (`label_places.rs`), clear of the obstacles in the panel.
 /// 3. Paint the labels with their leaders: leaders below the dots, texts above.
 pub(super) fn dots_and_labels(placed: &Placed<'_>) -> PaintedDots {

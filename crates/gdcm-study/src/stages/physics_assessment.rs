@@ -1,16 +1,18 @@
-//! Assesses physics parameters: analyses the study without and with them, and with the values found
-//! without each condition in turn (M18.5).
+//! Assesses physics parameters: analyses the study without and with them, and with the values fitted
+//! to the other conditions, for each condition in turn (M18.5).
 //!
 //! ```text
-//! 1  analysis without the parameters, and with them
-//! 2  each condition of the fit: values without it, schedule without it; J of the condition
-//! 3  J without and with the parameters                                  (`correction_costs`)
+//! 1  analysis without the parameters, and with them, which fits them
+//! 2  each condition of the fit: values and schedule fitted to the other conditions; J of the condition
+//! 3  J without and with the parameters, and with them but without gains and delays  (`correction_costs`)
 //! 4  reruns against the prediction                                      (`rerun_checks`)
 //! ```
 //!
 //! A parameter is a named quantity of the physics model, such as an inertia; its value is found
 //! from *runs*, which are models linearised again with one parameter moved. A *rerun* is a model
-//! with several moved, to check the values (M18.6). J is the mismatch cost (M4).
+//! with several moved, to check the values (M18.6). J is the mismatch cost (M4). The schedule gives
+//! gains and delays over airspeed. *Without* and *with* refer to the parameters; a condition is *left
+//! out*.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -112,9 +114,10 @@ impl Engine {
         }
         let share = LEFT_OUT_SHARE / ids.len() as f64;
         let found = each(self.executor(), ids, |condition| {
-            let Some(study) = study_without(&without.study, applied, condition) else {
+            let Some(study) = study_leaving_out(&without.study, applied, condition) else {
                 return Ok(None);
             };
+            // As after a model swap: the gains are proven, but no other minima are listed.
             let mut engine = self
                 .fork(Box::new(Sequential))
                 .with_proofs_within(SWAP_PROOF);
@@ -127,9 +130,14 @@ impl Engine {
     }
 }
 
-/// Returns the study with a condition held out and the values found without it set by hand; `None`
-/// if the condition cannot be held out.
-fn study_without(study: &Study, applied: &AppliedPhysics, condition: ConditionId) -> Option<Study> {
+/// Returns the study with a condition held out, and the values fitted to the other conditions set by
+/// hand: they replace every decision about single parameters. `None` if the condition cannot be held
+/// out.
+fn study_leaving_out(
+    study: &Study,
+    applied: &AppliedPhysics,
+    condition: ConditionId,
+) -> Option<Study> {
     let mut study = with_physics(study, PhysicsCorrection::ByHand);
     let settings = &mut study.settings.physics_parameters;
     settings.by_hand.clear();
@@ -177,7 +185,8 @@ fn condition_effects(
     effects
 }
 
-/// Returns the physics representative's poles without and with the parameters.
+/// Returns the physics representative's poles without and with the parameters, both before
+/// couplings: `file_condition` has the models of the dataset, `condition` the moved ones.
 fn representative_poles(result: &ConditionAnalysis) -> Result<Vec<PoleShift>, NoPoles> {
     let index = result.comparison.physics.model;
     let before = &result.file_condition().bundle(BundleKind::Physics)[index];
@@ -188,8 +197,8 @@ fn representative_poles(result: &ConditionAnalysis) -> Result<Vec<PoleShift>, No
     }
 }
 
-/// Returns the physics representative's responses without and with the parameters; empty if they do
-/// not move it.
+/// Returns the physics representative's responses without and with the parameters, both before
+/// couplings; empty if the parameters do not move it.
 fn response_shapes(
     result: &ConditionAnalysis,
     omega: &Arc<[f64]>,

@@ -28,12 +28,12 @@ impl Header {
     pub(super) fn read(bytes: &[u8]) -> Self {
         let mut header = Self::default();
         header.read_lines(bytes);
+        // Intra, predicted, slow, GPS and GPS home frames.
         for kind in *b"IPSGH" {
             let fields = header.parse_fields(char::from(kind));
             header.fields_by_letter.insert(kind, fields);
         }
-        // The header gives names and signs only for intra frames; predicted frames have the same
-        // fields.
+        // For the main frames, the header gives names and signs under I only; P has the same fields.
         let intra = header.fields_by_letter[&b'I'].clone();
         if let Some(predicted) = header.fields_by_letter.get_mut(&b'P') {
             predicted.names = intra.names;

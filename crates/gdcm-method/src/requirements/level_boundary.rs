@@ -233,7 +233,7 @@ impl LevelBoundary {
         None
     }
 
-    /// Returns the side on which a point lies.
+    /// Returns on which side of the boundary a bandwidth and a phase delay lie.
     fn side(&self, omega_bw_rad_s: f64, phase_delay_s: f64) -> BoundarySide {
         let last_rad_s = self.points.last().map_or(0.0, |point| point[0]);
         match self.least_bandwidth(phase_delay_s) {

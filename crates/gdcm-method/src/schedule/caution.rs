@@ -84,7 +84,8 @@ impl ScheduleCaution {
         }
     }
 
-    /// Returns whether the caution is about a condition, alone or with all others.
+    /// Returns whether the caution is about a condition; one without a condition of its own is about
+    /// every condition.
     pub fn concerns(&self, condition: ConditionId) -> bool {
         self.condition().is_none_or(|own| own == condition)
     }

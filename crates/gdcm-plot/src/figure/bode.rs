@@ -138,9 +138,9 @@ impl ResponsePlot<'_> {
         }
     }
 
-    /// Returns a range that fits the visible curves within the band (with leads, up to the end of
-    /// the invalid frequencies) and is at least `least` high; `None` if no curve has a finite
-    /// value.
+    /// Returns a range that fits the visible curves within the band and is at least `least` high;
+    /// `None` if no curve has a finite value. With leads, the band is extended to the end of the
+    /// frequencies at which the correction is not valid.
     fn fitted(&self, pane: Pane, least: f64) -> Option<Range> {
         let visible: Vec<BodeCurve> = self
             .curves

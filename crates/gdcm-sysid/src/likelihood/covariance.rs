@@ -35,7 +35,7 @@ const DETERMINED: f64 = 0.5;
 #[derive(Clone, Debug)]
 pub(crate) struct ParameterCovariance {
     parameters: LocalParameters,
-    /// `F` with `F F' = max(phi, 1) G^-1`.
+    /// `F` with `F F' = max(phi, 1) G^-1`, the covariance; `G` is the Gauss-Newton matrix of J.
     root: DMatrix<f64>,
     /// `G / max(phi, 1)`.
     information: DMatrix<f64>,

@@ -1,5 +1,5 @@
-//! `requirements.json`: the findings, serialised as they are, and a requirement grid per role.
-//! Sentences replace the codes for missing values; cautions get a sentence, bandwidths their level.
+//! `requirements.json`: the serialised findings, in which sentences replace the codes for missing
+//! values, cautions get a sentence and bandwidths their level; and a requirement grid per role.
 //!
 //! A *finding* holds the values for one of four questions (bandwidth, modes, summary costs, time
 //! histories) in a condition. The *grid* has the value and the verdict for each requirement and

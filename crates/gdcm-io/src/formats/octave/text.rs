@@ -81,7 +81,7 @@ fn read_variables(text: &str, budget: &ReadingBudget<'_>) -> Result<Vec<Variable
     Ok(variables)
 }
 
-/// State while a text is read.
+/// A text with the place up to which it has been read.
 struct TextReader<'t> {
     text: &'t str,
     /// Offset of the next byte.

@@ -323,7 +323,8 @@ pub fn met_text(count: GridCount) -> String {
     format!("{} of {} met", count.met, count.judged)
 }
 
-/// Completes [`met_text`]: "physics alone 73; 14 not determined".
+/// Counts the cells that the physics model meets alone, and those not determined, if any, to follow
+/// [`met_text`]: "physics alone 73; 14 not determined".
 pub fn count_details_text(count: GridCount) -> String {
     let physics = format!("physics alone {}", count.physics_met);
     match count.not_determined {

@@ -41,7 +41,7 @@ pub type UndoStep = Step<RecordsSnapshot, RecordChange>;
 /// Everything that the window keeps.
 #[derive(Debug)]
 pub struct State {
-    /// The study; preferences apart, the only part that is saved.
+    /// The study, the only part that a study file holds; preferences are stored separately.
     pub study: Study,
     /// Embedded example, if the dataset is one.
     pub example: Option<Example>,

@@ -316,26 +316,42 @@ pub(crate) fn open_export(window: &mut Window, folder: &Path, prefix: &str, form
     wait_for_export_plan(window);
 }
 
-/// Draws frames until the dry run of the export dialog has ended.
+/// Draws frames until the dry run of the export dialog has ended, and nothing is running that could
+/// change the results and so request another one.
 pub(crate) fn wait_for_export_plan(window: &mut Window) {
     wait_until(window, "the dry run of the export", |window| {
-        state(window).current_export_plan().is_some()
+        let state = state(window);
+        state.current_export_plan().is_some() && state.results.background_since.is_none()
     });
 }
 
 /// Presses the button of the export dialog that writes the files, and waits until the dialog is
 /// closed or shows an error.
 pub(crate) fn press_export(window: &mut Window) {
-    // A dry run is repeated if the results have changed since.
-    wait_for_export_plan(window);
-    let plan = state(window).current_export_plan().expect("a dry run");
-    let count = plan.file_count();
-    click(window, &format!("Export {}", counted(count, "file")));
-    // If the results have changed since, the dry run is repeated before the files are written.
-    wait_until(window, "the end of the export", |window| {
-        let forms = &state(window).forms;
-        forms.shown.is_none() || forms.export.error.is_some()
-    });
+    loop {
+        wait_for_export_plan(window);
+        // Results that arrive in a later frame disable the button until the dry run is repeated.
+        let Some(plan) = state(window).current_export_plan() else {
+            continue;
+        };
+        let label = format!("Export {}", counted(plan.file_count(), "file"));
+        click(window, &label);
+        if is_export_taken(window) {
+            break;
+        }
+    }
+    wait_until(window, "the end of the export", is_export_ended);
+}
+
+/// Returns whether the program has written the files, has refused to, or will do either as soon as
+/// the dry run has ended.
+fn is_export_taken(window: &Window) -> bool {
+    is_export_ended(window) || state(window).forms.export.is_awaited
+}
+
+fn is_export_ended(window: &Window) -> bool {
+    let forms = &state(window).forms;
+    forms.shown.is_none() || forms.export.error.is_some()
 }
 
 fn open_by_path(window: &mut Window, path: &Path) {

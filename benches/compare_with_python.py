@@ -21,9 +21,9 @@ import control
 import numpy as np
 import scipy
 
-# The shortest of the runs counts: what the machine does when nothing disturbs it.
+# The shortest run counts: other programs can only lengthen a run.
 RUNS = 50
-# Each divides the error by about 1e16 over the condition number, until it is that of a long double.
+# Each refinement divides the error by about 1e16 / condition number, down to that of a long double.
 REFINEMENTS = 4
 
 
@@ -45,13 +45,13 @@ class Model:
         return matrices
 
     def control(self):
-        """The model as python-control has it."""
+        """Return the model as a python-control system."""
         return control.ss(self.a, self.b, self.c, self.d)
 
 
-# The methods. Each takes a model and returns a function that computes the values, an array
-# [frequency, output, input]. That function is timed: reducing the model belongs in it, as in gdcm;
-# bringing the model into the form that a package takes does not.
+# Methods. Each takes a model and returns the timed function, which computes an array
+# [frequency, output, input]. As in gdcm, the time includes reducing the model; it excludes converting
+# the model into the form that a package accepts.
 
 
 def control_slycot(model):
@@ -132,7 +132,7 @@ def accurate(model):
     Where a long double is only a double (macOS on ARM), it is no better than the others.
     """
     matrices = model.resolvents()
-    # Exact, because the parts of an entry are zero, an entry of -A or a frequency.
+    # No rounding: each part of an entry is zero, an entry of -A, or a frequency.
     long_matrices = matrices.astype(np.clongdouble)
     states = np.zeros((len(model.s), *model.b.shape), np.clongdouble)
     for _ in range(REFINEMENTS):
@@ -185,7 +185,7 @@ def main():
     if importlib.util.find_spec("slycot") is None:
         del methods["python-control with slycot"]
         packages.remove("slycot")
-    # SciPy says that polynomials of a high degree are badly conditioned; the errors show it.
+    # Silence SciPy's warning that polynomials of high degree are badly conditioned: the errors show it.
     warnings.simplefilter("ignore", scipy.signal.BadCoefficients)
     print("Python", platform.python_version(), *(f"{name} {version(name)}" for name in packages))
     files = Path(sys.argv[1]).glob("*-states.json")

@@ -1,18 +1,18 @@
 #!/bin/sh
-# Frequency responses of gdcm beside those of python-control (with and without slycot), SciPy and
-# NumPy on the same models: time and error.
+# Compares time and error of frequency responses on the same models: gdcm, python-control (with and
+# without slycot), SciPy and NumPy.
 #
 #     sh benches/compare_with_python.sh
 #
-# Needs Python 3.11 or later with its venv module, and a network at the first run. Everything stays
-# in target/compare-python, except the Debian packages that slycot needs where there is no wheel of
-# it (there is one for Linux on x86-64): run by root, this script installs them.
+# Needs Python 3.11 or later with its venv module, and a network for the first run. All files are in
+# target/compare-python. Where slycot has no wheel (Linux on x86-64 has one), the script installs the
+# Debian packages to build it, if run by root.
 set -eu
 cd "$(dirname "$0")/.."
 
 environment=target/compare-python
 exported=$PWD/$environment/responses
-# What slycot is built with from its source (pip fetches CMake); the headers are for Debian's Python.
+# Packages to build slycot from source (pip fetches CMake); the headers are for Debian's Python.
 build_packages="gfortran libopenblas-dev python3-dev"
 
 install() {
@@ -35,6 +35,6 @@ install_slycot || { install_build_packages && install_slycot; } ||
 mkdir -p "$exported"
 GDCM_EXPORT_RESPONSES="$exported" cargo bench --bench responses
 
-# One thread, like gdcm; the libraries read these when they are loaded.
+# One thread, like gdcm; the libraries read these variables when they are loaded.
 export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 MKL_NUM_THREADS=1
 "$environment/bin/python" benches/compare_with_python.py "$exported"

@@ -90,7 +90,7 @@ def made_up():
 def main():
     problem, known = made_up()
     found = fit(problem)
-    # The ridge of a thousandth draws the entries that the responses hardly tell to nothing.
+    # A ridge of 1e-3 draws entries that hardly affect the responses to zero.
     error = np.abs(found - known).max()
     assert error < 0.02, error
     seconds = min(timeit.repeat(lambda: fit(problem), number=1, repeat=10))

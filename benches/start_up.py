@@ -17,9 +17,9 @@ import sys
 import time
 
 SCREEN = "1440x900x24"
-# Nothing changes in the window after that, or it is not the start that is slow.
+# Any later change in the window is not part of the start.
 SETTLED_AFTER_S = 3.0
-# A quarter of the scale of a byte.
+# Visible difference of a colour value: a quarter of its range, 0 to 255.
 VISIBLE = 64
 
 
@@ -34,26 +34,27 @@ def start_display():
 
 
 def picture(environment):
-    """What the screen shows."""
+    """Return the bytes of a screenshot."""
     return subprocess.run(["xwd", "-root", "-silent"], env=environment, capture_output=True, check=True).stdout
 
 
 def difference(picture, last):
-    """The part of the bytes that differ visibly; all where the pictures have another size."""
+    """Return the fraction of bytes that differ visibly; 1 if the sizes differ."""
     if len(picture) != len(last):
         return 1.0
     return sum(abs(a - b) > VISIBLE for a, b in zip(picture, last)) / len(last)
 
 
 def peak_memory_mb(process):
-    """The most memory that the process has had, resident [MB]."""
+    """Return the peak resident memory of the process [MB]."""
     with open(f"/proc/{process.pid}/status", encoding="ascii") as status:
         line = next(line for line in status if line.startswith("VmHWM"))
     return int(line.split()[1]) / 1024
 
 
 def measure(command, environment):
-    """One start: seconds to the picture that lacks error bars alone, and to the one with them; peak memory [MB]."""
+    """Start once; return the seconds to the picture without and with error bars, and the peak memory
+    [MB]."""
     start = time.monotonic()
     program = subprocess.Popen(command, env=environment, stderr=subprocess.DEVNULL)
     try:
@@ -71,7 +72,7 @@ def measure(command, environment):
 
 
 def main():
-    """Prints the shortest and the median of the runs."""
+    """Print the minimum and the median over the runs."""
     runs = int(sys.argv[1]) if len(sys.argv) > 1 else 5
     command = sys.argv[2:] or ["target/release/gdcm"]
     display, name = start_display()

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Builds every package into dist/, and prints what was tried of each.
+# Builds all packages into dist/, and prints how each was tried.
 #
 #   packaging/release.sh [--with-windows] [--in-fresh-debian]
 #
-# Linux: an archive and a Debian package; the Python wheel, if packaging/wheel is there. --with-windows adds the zip for
-# Windows (40 minutes of processor time); --in-fresh-debian installs the Debian package in a fresh Debian (as root).
-# A changed source is built too, and `gdcm --version` says so.
+# Linux: an archive, a Debian package and the Python wheel. --with-windows adds the zip for Windows
+# (40 minutes of processor time); --in-fresh-debian installs the Debian package in a fresh Debian, as
+# root. A modified source is built too; `gdcm --version` then says "modified".
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 cd "$root"
@@ -15,7 +15,7 @@ for option in "$@"; do
   case $option in
     --with-windows) with_windows=yes ;;
     --in-fresh-debian) in_fresh_debian=yes ;;
-    *) sed -n '2,9s/^# \{0,1\}//p' "$0"; exit 2 ;;
+    *) sed -n '2,8s/^# \{0,1\}//p' "$0"; exit 2 ;;
   esac
 done
 version=$(sed -n '/^\[workspace.package\]/,/^\[/s/^version = "\(.*\)"/\1/p' Cargo.toml)
@@ -26,7 +26,7 @@ not_tried=()
 mkdir -p "$dist"
 rm -f "$dist"/*
 
-# The program. Paths of this machine stay out of it.
+# The program, without paths of this machine.
 export CARGO_TARGET_DIR="${CARGO_TARGET_DIR:-$root/target}"
 export RUSTFLAGS="${RUSTFLAGS:-} --remap-path-prefix=$root=gdcm --remap-path-prefix=${CARGO_HOME:-$HOME/.cargo}=cargo"
 cargo build --locked --release --bin gdcm
@@ -34,7 +34,7 @@ program=$CARGO_TARGET_DIR/release/gdcm
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-# Archive for every Linux with the machine's glibc or a later one.
+# Archive for Linux with this machine's glibc or a later version.
 name=gdcm-$version-linux-$(uname -m)
 folder=$work/$name
 mkdir -p "$folder/man"
@@ -52,7 +52,7 @@ tar -C "$work/unpacked" -xf "$dist/$name.tar.xz"
   cd results && sha256sum --quiet -c ./*.sha256)
 tried+=("$name.tar.xz: unpacked; --version, example, analyze, analyze --force, checksums of the results")
 
-# Source archive: it carries its commit.
+# Source archive, which states its commit.
 if git rev-parse --git-dir >/dev/null 2>&1; then
   git archive --format=tar --prefix="gdcm-$version/" HEAD | xz -9 -T1 > "$dist/gdcm-$version-source.tar.xz"
   tar -xOf "$dist/gdcm-$version-source.tar.xz" "gdcm-$version/packaging/source-commit.txt" | grep -qx "$(git rev-parse HEAD)"

@@ -9,7 +9,7 @@ root=$(cd "$(dirname "$0")/../.." && pwd)
 dist=$(realpath -m "${1:-$root/dist}")
 cd "$root"
 version=$(sed -n '/^\[workspace.package\]/,/^\[/s/^version = "\(.*\)"/\1/p' Cargo.toml)
-# Dates are those of the commit: the same source gives the same package.
+# Dates are taken from the commit, so that the same source gives the same package.
 export SOURCE_DATE_EPOCH="${SOURCE_DATE_EPOCH:-$(git log -1 --format=%ct 2>/dev/null || date +%s)}"
 files=target/debian-files
 rm -rf "$files"
@@ -41,7 +41,7 @@ if command -v appstreamcli >/dev/null; then
   echo "tried: appstreamcli validate"
 fi
 if command -v lintian >/dev/null; then
-  # The package is made for Debian's systems, and not for Debian's archive, which would ask for a bug number.
+  # Suppressed: the number of a bug report, which only packages in Debian's archive need.
   lintian --allow-root --fail-on error,warning --suppress-tags initial-upload-closes-no-bugs "$package"
   echo "tried: lintian, no error and no warning"
 fi

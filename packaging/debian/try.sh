@@ -1,8 +1,10 @@
 #!/usr/bin/env bash
-# Installs a package in a fresh Debian and tries it there: the commands without the recommended packages, then the window
-# on a virtual display, of which it takes a picture.
+# Installs a package in a fresh Debian and tries it: the commands without the recommended packages,
+# then the window on a virtual display, with a screenshot.
 #
-#   packaging/debian/try.sh PACKAGE.deb [PICTURE.png]       as root; needs mmdebstrap, Xvfb, xdotool and import (ImageMagick)
+#   packaging/debian/try.sh PACKAGE.deb [PICTURE.png]
+#
+# Runs as root; needs mmdebstrap, Xvfb, xdotool and import (ImageMagick).
 set -euo pipefail
 package=$(realpath "$1")
 picture=$(realpath -m "${2:-gdcm-in-debian.png}")
@@ -28,7 +30,8 @@ inside chroot "$chroot" sh -ec 'cd /root && gdcm analyze example-dataset.json --
 inside chroot "$chroot" test -s /usr/share/man/man1/gdcm-analyze.1.gz
 echo "tried in a fresh Debian $suite: install, gdcm --version, example, analyze, analyze --force"
 
-# Removed without a trace, and installed again with what the window needs: apt takes recommended packages the first time only.
+# Remove the package and install it again with the recommended packages, which the window needs: apt
+# installs them only with a new package.
 inside chroot "$chroot" apt-get purge -qq -o Dpkg::Use-Pty=0 gdcm >/dev/null
 inside chroot "$chroot" sh -c '! test -e /usr/bin/gdcm && ! test -e /usr/share/doc/gdcm'
 inside chroot "$chroot" apt-get update -qq

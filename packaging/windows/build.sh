@@ -1,13 +1,16 @@
 #!/usr/bin/env bash
-# Builds the program for Windows on a Debian machine, packs it as a zip, and tries the commands and the window under Wine.
+# Builds the Windows program on a Debian machine, packs it into a zip, and tries its commands and its
+# window under Wine.
 #
 #   packaging/windows/build.sh [DIRECTORY OF THE ZIP, default dist]
 #
-# It takes about 40 minutes of processor time, so that it is not part of .ci/run. GDCM_WINDOWS_WORK names its working folder
-# (default target/windows): compiler, build and what the trials leave. Needs apt-get, dpkg-deb, zip, rsvg-convert and wine64.
+# Not part of .ci/run: it takes about 40 minutes of processor time. GDCM_WINDOWS_WORK names the working
+# folder for compiler, build and trial results (default target/windows). Needs apt-get, dpkg-deb, zip,
+# rsvg-convert and wine64.
 #
-# rustup offers no standard library for Windows on every machine; Debian's package rustc-web comes with its source, and cargo
-# builds it (-Zbuild-std). The packages are unpacked and not installed: they conflict with rustup's compiler.
+# Where rustup has no standard library for Windows, Debian's package rustc-web provides its source, and
+# cargo builds it (-Zbuild-std). The packages are unpacked instead of installed, because they conflict
+# with rustup's compiler.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
@@ -34,7 +37,7 @@ get_compiler() {
   done
 }
 
-# Resources: the icon and the version that the file manager of Windows shows.
+# Resources: icon and version for the file manager of Windows.
 make_resources() {
   mkdir -p "$work/resources"
   for size in 16 32 48 64 256; do
@@ -50,7 +53,7 @@ with_compiler() {
 }
 
 build() {
-  # Paths of this machine stay out of the program.
+  # Keep paths of this machine out of the program.
   local flags="--remap-path-prefix=$root=gdcm --remap-path-prefix=${CARGO_HOME:-$HOME/.cargo}=cargo --remap-path-prefix=$compiler=compiler"
   (cd "$root" && with_compiler env RUSTC="$compiler/usr/bin/rustc" RUSTC_BOOTSTRAP=1 RUSTFLAGS="$flags" \
     CARGO_TARGET_DIR="$work/build" \
@@ -68,7 +71,7 @@ pack() {
   sed "s/@VERSION@/$version/g; s/$/\r/" "$here/README.txt" > "$folder/README.txt"
   cp "$root/LICENSE-MIT" "$root/LICENSE-APACHE" "$root/assets/licences.txt" "$folder/"
   rm -f "$dist/$name.zip"
-  # -X and the fixed time: the same program gives the same zip.
+  # Fixed time stamps and -X (no extra attributes): the same program gives the same zip.
   find "$folder" -exec touch -d "@${SOURCE_DATE_EPOCH:-$(git -C "$root" log -1 --format=%ct 2>/dev/null || echo 315619200)}" {} +
   (cd "$work" && find "$name" | LC_ALL=C sort | TZ=UTC zip -qX "$dist/$name.zip" -@)
 }

@@ -7,7 +7,7 @@ import json
 import sys
 
 LARGEST = 1e-6
-# What may differ: the program that wrote the file, and folders.
+# Keys whose values may differ: the program that wrote the file, and folders.
 IGNORED = {"software"}
 
 
@@ -24,7 +24,7 @@ class Difference:
             if a != b:
                 self.others.append(f"{path}: {a!r}, {b!r}")
         elif isinstance(a, (int, float)) and isinstance(b, (int, float)):
-            # Values near zero, such as entries that only rounding makes, are compared absolutely.
+            # Values near zero, such as entries that consist of rounding errors, are compared absolutely.
             difference = abs(a - b) / max(abs(a), abs(b), 1e-6)
             if difference > self.largest:
                 self.largest, self.at = difference, path

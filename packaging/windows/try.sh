@@ -1,8 +1,11 @@
 #!/usr/bin/env bash
-# Tries a zip for Windows under Wine: the commands example, analyze, analyze --force and identify, the window through
-# gdcm-window.exe, of which it takes a picture; and compares results with those of a program for Linux, if one is given.
+# Tries a zip for Windows under Wine: the commands example, analyze, analyze --force and identify, and
+# the window started by gdcm-window.exe, with a screenshot. Compares the results with those of a Linux
+# program, if given.
 #
-#   packaging/windows/try.sh ZIP [PROGRAM FOR LINUX]        needs wine64, Xvfb, xdotool, import; the compiler of build.sh
+#   packaging/windows/try.sh ZIP [LINUX PROGRAM]
+#
+# Needs wine64, Xvfb, xdotool, import, and the compiler of build.sh.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
@@ -24,7 +27,8 @@ cleanup() {
 }
 trap cleanup EXIT
 
-# Wine 8 lacks a library of Windows from which Rust takes random numbers. For Wine alone; it is in no package.
+# Wine 8 lacks the Windows library from which Rust takes random numbers. This replacement is used
+# under Wine only and is in no package.
 for place in "$folder" "$folder/bin"; do
   env LD_LIBRARY_PATH="$compiler/usr/lib/x86_64-linux-gnu" PATH="$compiler/usr/bin:$PATH" \
     x86_64-w64-mingw32-gcc-win32 -shared -o "$place/bcryptprimitives.dll" "$here/bcryptprimitives.c" \
@@ -74,7 +78,7 @@ running+=($!)
 timeout 120 xdotool search --sync --onlyvisible --name '^gdcm|gdcm$' >/dev/null
 sleep "${GDCM_WAIT:-20}"
 import -window root "$work/window.png"
-# The window alone: no console beside it.
+# Only the window must be open, without a console.
 names=$(xdotool search --onlyvisible --name '.*' 2>/dev/null | while read -r id; do xdotool getwindowname "$id"; done | sort -u)
 echo "windows on the screen: $names"
 if grep -qi 'console\|gdcm.exe' <<< "$names"; then

@@ -32,7 +32,7 @@ def command(*words: Any, environment: Any = None) -> subprocess.CompletedProcess
 
 
 def without_source(corrections: dict) -> dict:
-    """Return corrections without the checksum of the dataset's file, and where models come from."""
+    """Return corrections without the checksum of the dataset file and the provenance of models."""
     corrections = json.loads(json.dumps(corrections))
     del corrections["dataset"]["sha256"]
     for condition in corrections["conditions"]:
@@ -69,7 +69,7 @@ def identified() -> gdcm.Identification:
 
 
 class Folder(unittest.TestCase):
-    """A test with an empty folder."""
+    """Base class of tests that use an empty folder."""
 
     def setUp(self) -> None:
         folder = tempfile.TemporaryDirectory()
@@ -78,7 +78,7 @@ class Folder(unittest.TestCase):
 
 
 class Agreement(Folder):
-    """Every number is that of the command, to the last digit."""
+    """Numbers equal those of the command, to the last digit."""
 
     def corrections(self, *words: Any) -> dict:
         done = command("analyze", *words, "--out", self.folder / "results", "--force")
@@ -378,7 +378,7 @@ class Errors(Folder):
 
 
 class Work(unittest.TestCase):
-    """Long work reports, can be stopped, and leaves the interpreter to others."""
+    """Long work reports progress, can be stopped, and releases the interpreter lock."""
 
     def test_progress_is_reported_in_the_calling_thread(self) -> None:
         heard = []
@@ -438,7 +438,7 @@ class Work(unittest.TestCase):
         while not done.wait(0.001):
             turns += 1
         worker.join()
-        # While the interpreter's lock is held, no turn is possible.
+        # The counter advances only while the interpreter lock is released.
         self.assertGreater(turns, 0)
 
     def test_two_analyses_at_once_give_the_same_results(self) -> None:
@@ -582,7 +582,7 @@ class Arrays(Folder):
         ratio = (fix[10].response(OMEGA) / example().response(10, OMEGA))[row, column]
         expected = np.full(OMEGA.shape, fix[10].net_gain["Q", "LON"], dtype=complex)
         for lead in (leads.outputs["Q"], leads.inputs["LON"]):
-            # A critically damped lead over a lag of the same form, of the same gain at rest (M15.3).
+            # A critically damped second-order lead over such a lag, with unit static gain (M15.3).
             zero, lag = lead["zero_rad_s"], lead["lag_rad_s"]
             expected *= ((1j * OMEGA / zero + 1.0) / (1j * OMEGA / lag + 1.0)) ** 2
         phase = np.angle(ratio / expected)
@@ -667,7 +667,7 @@ class Arrays(Folder):
 
 
 class Frames(unittest.TestCase):
-    """Tables for pandas, and what is said where a package is missing."""
+    """Tables for pandas, and the errors where a package is missing."""
 
     def test_frames_have_the_values_of_the_results(self) -> None:
         fix = with_leads()

@@ -1,4 +1,4 @@
-"""The exception of every call."""
+"""Exception that calls of this module raise."""
 
 from __future__ import annotations
 

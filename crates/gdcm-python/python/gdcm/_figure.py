@@ -10,7 +10,7 @@ from ._frames import frame_of
 
 
 class Figure:
-    """A figure; a notebook shows it as it is.
+    """A figure, which a notebook displays as SVG.
 
     Attributes
     ----------

@@ -7,7 +7,10 @@ from typing import Any
 
 
 def pandas() -> Any:
-    """Return the package pandas, or raise an ImportError that says what needs it."""
+    """Return the package pandas.
+
+    Raises an ImportError that names the caller if pandas is not installed.
+    """
     try:
         import pandas as found
     except ImportError as error:

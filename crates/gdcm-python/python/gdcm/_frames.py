@@ -9,7 +9,7 @@ from typing import Any
 def pandas() -> Any:
     """Return the package pandas.
 
-    Raises an ImportError that names the caller if pandas is not installed.
+    Raises an ImportError if pandas is not installed; every caller is a `to_frame()`.
     """
     try:
         import pandas as found
@@ -23,7 +23,7 @@ def pandas() -> Any:
 def frame_of(table: bytes) -> Any:
     """Return a CSV table as a pandas data frame, in which no digit of a number is lost.
 
-    pandas 3.1 reads exactly without being asked, and warns if it is asked.
+    From version 3.1 on, pandas reads exactly by default, and warns about the option.
     """
     reader = pandas()
     version = tuple(int(part) for part in reader.__version__.split(".")[:2])

@@ -133,7 +133,7 @@ fn doubts_section(analysis: &Analysis) -> String {
 /// Describes a doubt about a channel's sign or unit, with the option that inverts the sign.
 pub(super) fn doubt_words(doubt: &ConventionDoubt, dataset: &Dataset) -> String {
     let mut words = doubt_text(doubt, dataset);
-    if let Some(channel) = doubt.turns() {
+    if let Some(channel) = doubt.channel_to_reverse() {
         let (inputs, outputs) = dataset.input_and_output_names();
         words += &format!(" (--sign {}=-1)", channel.name(&inputs, &outputs));
     }

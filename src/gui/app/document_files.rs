@@ -40,7 +40,7 @@ pub(super) struct DocumentFiles {
     pub(super) saved: SavedStudy,
     /// Datasets that were open before a reload, or after a reload that was undone: undo and redo
     /// switch between them.
-    pub(super) earlier: Vec<LoadedDataset>,
+    pub(super) replaced_datasets: Vec<LoadedDataset>,
     /// Dataset most recently made from records.
     pub(super) made_of_records: Option<DatasetOfRecords>,
     /// Folder with the last written files.

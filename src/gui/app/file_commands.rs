@@ -34,8 +34,8 @@ impl GdcmApp {
             FileCommand::RestoreRecovery(offer) => self.restore(offer),
             FileCommand::DiscardRecovery(offer) => self.discard(offer),
             FileCommand::Reload => self.reload(),
-            FileCommand::KeepOpen => self.keep_open(),
-            FileCommand::LookForRecent => self.read_recent(None),
+            FileCommand::KeepOpen => self.withdraw_reload_offer(),
+            FileCommand::LookForRecent => self.refresh_recent_files(None),
             FileCommand::Quit if self.state.unsaved && !self.postponed.closing => {
                 self.ask_to_lose(PendingAction::Quit)
             }

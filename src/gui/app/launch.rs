@@ -183,7 +183,7 @@ fn run(
                 .join()
                 .unwrap_or_else(|panic| std::panic::resume_unwind(panic));
             let mut app = create_window(creation, loaded, models)?;
-            app.recovery.drawn = drawn;
+            app.recovery.autosave_once_drawn = drawn;
             Ok(Box::new(app))
         }),
     )

@@ -1,7 +1,8 @@
 //! Commands that change the layout and the focus.
 //!
 //! The *arrangement* says which views are shown: in front, beside the front view and in the dock. A
-//! *region* is a part of the window, such as a panel; F6 moves the focus from one to the next.
+//! *sheet* is drawn over the views until it is closed. A *region* is a part of the window, such as
+//! a panel; F6 moves the focus from one to the next.
 
 use super::GdcmApp;
 use crate::gui::commands::layout::LayoutCommand;
@@ -27,7 +28,8 @@ pub(super) enum NextFocus {
 }
 
 impl NextFocus {
-    /// Number of frames after which a newly opened section has drawn its fields.
+    /// Number of frames within which a newly opened section draws its fields; if the field is
+    /// still missing then, the focus stays where it is.
     const FRAMES: u8 = 3;
 
     fn field(name: &'static str) -> Self {
@@ -56,6 +58,7 @@ impl GdcmApp {
             }
             LayoutCommand::ResetLayout => {
                 display.layout.arrangement = Arrangement::default();
+                // The left panel follows the window's width again.
                 display.layout.left_open = None;
                 self.ctx.memory_mut(|memory| memory.reset_areas());
             }
@@ -81,7 +84,7 @@ impl GdcmApp {
             LayoutCommand::StartTour => self.state.tour = Some(0),
             LayoutCommand::ShowTourStep(step) => self.state.tour = step,
             LayoutCommand::ShowStart(is_shown) => self.state.on_start_page = is_shown,
-            LayoutCommand::BeginWith(choice) => display.layout.opens_with = choice,
+            LayoutCommand::BeginWith(first_content) => display.layout.opens_with = first_content,
         }
     }
 

@@ -8,7 +8,10 @@
 //! 4. `show_analysis` stores the whole analysis and its request number (`Results::received`), and
 //!    requests the jobs that complete it: curves, error bars, proofs.
 //! 5. `take_proof` receives a proof that a condition's gains are optimal, and starts the job again,
-//!    with the same request number.
+//!    with the same request number but a new job number.
+//!
+//! A *settings session* lasts while the settings panel is open; it keeps the settings from its
+//! beginning with their analysis, to which changed values are compared.
 
 use std::sync::Arc;
 
@@ -60,12 +63,12 @@ impl GdcmApp {
         let Some((study, condition)) = self.work.newest_request.clone() else {
             return;
         };
-        let number = match &self.work.live_job {
+        let job_number = match &self.work.live_job {
             Some(job) => job.number + 1,
             None => 0,
         };
         self.work.live_job = Some(AnalysisJob {
-            number,
+            number: job_number,
             request: self.state.results.requested,
             study,
             condition,
@@ -94,6 +97,7 @@ impl GdcmApp {
         }
         results.received = job.request;
         results.analysis = Some(Arc::clone(&timed.analysis));
+        // The whole analysis includes the result that was shown ahead of it.
         results.first = None;
         if let Some(session) = &mut self.state.settings_session
             && session.analysis.is_none()
@@ -102,7 +106,10 @@ impl GdcmApp {
             session.analysis = Some(timed.analysis);
         }
         let results = &mut self.state.results;
-        results.stopped &= results.is_behind();
+        if !results.is_behind() {
+            results.stopped = false;
+        }
+        // A still newer request waits from now on.
         results.waiting_since = if results.is_waiting() {
             Some(now)
         } else {

@@ -1,7 +1,8 @@
 //! Reads models from files in a thread, and adds them to the import.
 //!
-//! The *import* lists the models from which a dataset is to be assembled, with the files that had
-//! none. A reading may be stopped, or replaced by a newer one, whose number is larger; see
+//! The *import* lists the models from which a dataset is to be assembled, and messages: *faults*
+//! about unreadable content, *ignored* content that is not a model, *unused* content in model
+//! files. A reading may be stopped, or replaced by a newer one, whose number is larger; see
 //! `readers.rs`.
 
 use std::cell::Cell;
@@ -19,10 +20,12 @@ use super::threads::ReplySender;
 use crate::gui::state::assembling::ReadingProgress;
 use crate::message::Message;
 
-/// Files to read: additional files, or all files again with other column headings.
+/// Files to read.
 #[derive(Clone, Debug)]
 pub(super) enum Sources {
+    /// Additional files.
     More(Vec<PathBuf>),
+    /// All files of the import, with changed column headings.
     Again(Vec<PathBuf>),
 }
 
@@ -46,7 +49,7 @@ impl GdcmApp {
             number,
             replies: self.work.replies.clone(),
             stop: reading.stop,
-            reported: Cell::new(0),
+            reported_bytes: Cell::new(0),
         };
         let read = move || {
             let found = read_models(sources.paths(), &headings, &report);
@@ -100,8 +103,9 @@ impl GdcmApp {
         import.faults.extend(found.faults);
         import.ignored.extend(found.ignored);
         import.tables.extend(found.tables);
-        // Columns whose units follow neither from headings nor from values.
-        import.unsaid.extend(found.missing_units);
+        // Units of columns that follow neither from headings nor from values.
+        import.missing_units.extend(found.missing_units);
+        // Propose paths for dataset and rules: beside the first file or folder, with its name.
         if import.dataset_path.is_empty()
             && let Some(first) = paths.first()
         {
@@ -127,7 +131,7 @@ struct ReadingReport {
     replies: ReplySender,
     stop: Arc<AtomicBool>,
     /// Bytes of the current file that had been read at the last progress report.
-    reported: Cell<u64>,
+    reported_bytes: Cell<u64>,
 }
 
 impl ReadingReport {
@@ -146,22 +150,22 @@ impl ReadingReport {
 
 impl FolderProgress for ReadingReport {
     fn reading(&self, number: usize, total: usize, name: &str) {
-        self.reported.set(0);
+        self.reported_bytes.set(0);
         let reading = ReadingProgress {
             number,
             total,
             name: name.to_owned(),
-            taken: 0,
+            read_bytes: 0,
         };
         self.send(|shown| *shown = Some(reading));
     }
 
-    fn taken(&self, taken: u64) {
-        if taken >= self.reported.get() + REPORT_EVERY {
-            self.reported.set(taken);
+    fn taken(&self, read_bytes: u64) {
+        if read_bytes >= self.reported_bytes.get() + REPORT_EVERY {
+            self.reported_bytes.set(read_bytes);
             self.send(move |shown| {
                 if let Some(reading) = shown {
-                    reading.taken = taken;
+                    reading.read_bytes = read_bytes;
                 }
             });
         }

@@ -17,6 +17,10 @@ use crate::gui::state::notices::{
 };
 use crate::message::Message;
 
+/// Minimum pause before the repaint in which a toast disappears \[s\]; a shorter one would draw a
+/// frame without a visible difference.
+const LEAST_PAUSE_S: f64 = 0.02;
+
 impl GdcmApp {
     /// Shows a toast about a completed action.
     pub(super) fn notify_done(&mut self, message: Message) {
@@ -75,6 +79,7 @@ impl GdcmApp {
             activity,
             action,
             at: Zoned::now().strftime("%H:%M").to_string(),
+            // `Notices::add` gives the notice its number.
             number: 0,
         });
         self.ctx.request_repaint();
@@ -86,7 +91,7 @@ impl GdcmApp {
         let now_s = self.now();
         if let Some(next_s) = self.state.notices.pass_time(now_s) {
             self.ctx
-                .request_repaint_after(Duration::from_secs_f64(next_s.max(0.02)));
+                .request_repaint_after(Duration::from_secs_f64(next_s.max(LEAST_PAUSE_S)));
         }
     }
 

@@ -4,7 +4,7 @@
 //!    `reload.rs` start with their own purposes.
 //! 2. `read` reads in a thread.
 //! 3. `answer_opened` asks first if unsaved decisions would be lost, and reports an error.
-//! 4. `show_read` shows what was read: by `show`, `show_reloaded` or `show_restored`.
+//! 4. `show_read` shows the content: by `show`, `show_reloaded` or `show_restored`.
 
 use std::path::PathBuf;
 
@@ -67,7 +67,7 @@ impl GdcmApp {
         };
         state.recent = std::mem::take(&mut self.state.recent);
         state.notices = std::mem::take(&mut self.state.notices);
-        state.notices.follow_decision();
+        state.notices.drop_obsolete_toasts();
         Preferences::from_display(&self.state.display).apply(&mut state.display);
         // Keep the offers to restore lost decisions; the other bars concern the previous study.
         state
@@ -79,9 +79,10 @@ impl GdcmApp {
         self.state.results.requested = requested;
         self.state.results.received = requested;
         self.files.loaded = loaded;
-        self.files.earlier.clear();
+        // A reload of the previous study can no longer be undone.
+        self.files.replaced_datasets.clear();
         self.files.saved = saved;
-        self.keep_unsaved();
+        self.update_recovery_file();
         let message = Message::new("opened", format!("opened {name}"));
         self.notify_done_with(Activity::Opening, message, None);
     }
@@ -149,7 +150,7 @@ impl GdcmApp {
         self.show(Opened::Dataset(example));
         self.state.on_start_page = true;
         self.state.notices.dismiss_all();
-        self.read_recent(None);
+        self.refresh_recent_files(None);
     }
 
     fn answer_opened(&mut self, purpose: ReadFor, opened: Result<Opened, FileError>) {
@@ -166,7 +167,7 @@ impl GdcmApp {
         match purpose {
             ReadFor::Opening => {
                 self.show(opened);
-                self.look_for_recent();
+                self.list_open_file_as_recent();
             }
             ReadFor::Reloading => self.show_reloaded(opened.into_study().1),
             ReadFor::Restoring(offer) => self.show_restored(offer, opened),
@@ -175,7 +176,8 @@ impl GdcmApp {
 
     /// Reports why a file was not opened, or asks for a study's dataset; the open study remains.
     fn open_failed(&mut self, error: FileError) {
-        self.read_recent(None);
+        // The file may have been a recent file that no longer exists.
+        self.refresh_recent_files(None);
         match error {
             FileError::StudyDataset { path, dataset } => {
                 self.state.forms.lost_dataset = Some((path, dataset.to_string()));

@@ -12,15 +12,15 @@ use crate::gui::state::window_state::RecentFile;
 
 impl GdcmApp {
     /// Puts the open study, or else the open dataset, first in the recent-files list.
-    pub(super) fn look_for_recent(&self) {
+    pub(super) fn list_open_file_as_recent(&self) {
         let study = self.files.saved.path.as_deref();
         let newest = study.or(self.files.loaded.path());
-        self.read_recent(newest.map(Path::to_owned));
+        self.refresh_recent_files(newest.map(Path::to_owned));
     }
 
     /// Reads the recent-files list and checks which files exist; puts `newest` first. Runs in a
     /// separate thread, because a network drive may be slow.
-    pub(super) fn read_recent(&self, newest: Option<PathBuf>) {
+    pub(super) fn refresh_recent_files(&self, newest: Option<PathBuf>) {
         let Some(directory) = self.files.directory.clone() else {
             return;
         };

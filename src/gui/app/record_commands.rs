@@ -28,7 +28,7 @@ impl GdcmApp {
             RecordsCommand::Assign(indices, id) => self.assign_records(&indices, id),
             RecordsCommand::Discard(index) => self.discard_record(index),
             RecordsCommand::ShowFold(fold) => records.open_fold = fold,
-            RecordsCommand::Show(page) => records.page = page,
+            RecordsCommand::ShowPage(page) => records.page = page,
             RecordsCommand::ShowSpectrogram(input) => records.spectrogram = input,
             RecordsCommand::ShowTimeRole(role, true) => {
                 records.hidden_roles.remove(&role);
@@ -42,21 +42,22 @@ impl GdcmApp {
                 let conditions = self.state.conditions_to_identify();
                 self.identify_conditions(&conditions);
             }
-            RecordsCommand::Stop => self.stop_identifying(),
-            RecordsCommand::Take(offered) => self.take_identified(&[condition], offered),
-            RecordsCommand::TakeAll(offered) => {
+            RecordsCommand::StopIdentifying => self.stop_identifying(),
+            RecordsCommand::Adopt(choice) => self.adopt_identified(&[condition], choice),
+            RecordsCommand::AdoptAll(choice) => {
                 let conditions = self.state.unused_fits();
-                self.take_identified(&conditions, offered);
+                self.adopt_identified(&conditions, choice);
             }
-            RecordsCommand::Return => self.decide(&Edit::ReturnModels { condition }),
+            RecordsCommand::RestoreFileModels => self.decide(&Edit::ReturnModels { condition }),
             RecordsCommand::ShowAdvanced(field) => {
                 records.open_fold = Some(RecordsFold::Settings);
                 records.advanced_field = Some(field);
             }
             RecordsCommand::AdvancedFocused => records.advanced_field = None,
-            RecordsCommand::Choose(index) => {
+            RecordsCommand::ChooseRecord(index) => {
                 if let Some(records) = records.conditions.get_mut(&condition) {
                     records.choose(index);
+                    // The input in focus no longer decides which record is displayed.
                     records.is_chosen = true;
                 }
             }

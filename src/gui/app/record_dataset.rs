@@ -1,7 +1,9 @@
 //! Makes a dataset from flight records, in a thread.
 //!
-//! A record is read as a *table* of columns; its *layout* assigns columns to channels. *Topics* are
-//! tables from one log with clocks of their own, which are combined into one record.
+//! A record is read as a *table* of columns; its *layout* assigns columns to channels, and its
+//! *guess* is what the names of its files tell about the manoeuvre. *Topics* are tables from one
+//! log with clocks of their own, which are combined into one record. An *entry* lists a record in
+//! the dataset. The *wanted* dataset is the content of the form, as typed.
 
 use std::path::{Path, PathBuf};
 
@@ -20,7 +22,8 @@ use crate::gui::state::wanted_dataset::WantedDataset;
 use crate::message::Message;
 use crate::message_codes::layout_problem_code;
 
-/// Maximum count of reported problems if no record is suitable.
+/// Maximum count of reported problems if no record is suitable: the form lists each on a line of
+/// its own, and the first few show what is wrong.
 const MOST_PROBLEMS: usize = 6;
 
 /// Sources and settings of a dataset that is to be made from records.

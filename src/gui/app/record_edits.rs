@@ -1,10 +1,11 @@
 //! Undoable edits to a condition's records: which records are used, their parts, manoeuvres,
 //! remedies, and the identification settings.
 //!
-//! A *row* is a record as it was read, with the columns assigned to its channels (its layout); a
-//! *part* is a time span cut from a record, with a row of its own. *Topics* are a log's tables with
-//! clocks of their own. They are resampled to a common clock, which depends on the upper end of the
-//! identification band (`follow_band`).
+//! A *row* is a record as it was read, with the columns assigned to its channels (its layout); its
+//! *guess* holds manoeuvre and hold-out, guessed from names until the engineer sets them. A *part*
+//! is a time span cut from a record, with a row of its own. *Topics* are a log's tables with clocks
+//! of their own, resampled to a common clock, which depends on the upper end of the identification
+//! band (`follow_band`).
 
 use gdcm_model::dataset::ConditionId;
 use gdcm_model::dataset::condition::ChannelRemedy;
@@ -33,7 +34,7 @@ impl GdcmApp {
         };
         match apply_edit(records, command, &channels) {
             Ok(true) => {
-                records.changed = true;
+                records.changed_since_fit = true;
                 self.record_edited(change, before);
                 self.follow_band(condition);
             }
@@ -73,7 +74,7 @@ impl GdcmApp {
         }
         if is_changed {
             leave_out_copies(&mut records.rows);
-            records.changed = true;
+            records.changed_since_fit = true;
             // The topics' common clock was chosen for another condition; `follow_band` chooses it
             // anew.
             records.clock_band_end = None;
@@ -98,11 +99,12 @@ impl GdcmApp {
         self.record_edited(RecordChange::Discard { record }, before);
     }
 
-    /// Adds a record edit to the undo history, and removes toasts that it makes obsolete.
+    /// Adds a record edit to the undo history, which holds it beside the unchanged study, and
+    /// removes toasts that it makes obsolete.
     pub(super) fn record_edited(&mut self, change: RecordChange, before: RecordsSnapshot) {
         let study = self.state.study.clone();
         self.state.history.record_beside(study, change, before);
-        self.state.notices.follow_decision();
+        self.state.notices.drop_obsolete_toasts();
     }
 }
 

@@ -1,8 +1,9 @@
-//! Identification from flight records: starts and stops the jobs, and adds the models to the study.
+//! Identification from flight records: starts and stops the jobs, and puts the models into the
+//! study.
 //!
 //! The method is in docs/identification.md. An identification finds several models for a condition;
 //! the engineer chooses which of them replace the identified models in the study
-//! ([`AdoptionChoice`]).
+//! ([`AdoptionChoice`]). `records.running` are the running and the waiting jobs.
 
 use std::sync::Arc;
 
@@ -72,14 +73,15 @@ impl GdcmApp {
             self.notify_done(Message::new("identification-finished", text));
         }
         if let Some(records) = self.state.records.conditions.get_mut(&job.condition) {
-            records.changed = false;
+            records.changed_since_fit = false;
             records.found = Some((job, outcome));
         }
     }
 
-    /// Adds these conditions' identified models to the study.
-    pub(super) fn take_identified(&mut self, conditions: &[ConditionId], offered: AdoptionChoice) {
-        let adopted = self.adopted_models(conditions, offered);
+    /// Puts the models that were identified in these conditions into the study, where they replace
+    /// the earlier identified models.
+    pub(super) fn adopt_identified(&mut self, conditions: &[ConditionId], choice: AdoptionChoice) {
+        let adopted = self.adopted_models(conditions, choice);
         if adopted.is_empty() {
             return self.notify_error(Message::new(
                 "nothing-identified",
@@ -111,14 +113,14 @@ impl GdcmApp {
     fn adopted_models(
         &self,
         conditions: &[ConditionId],
-        offered: AdoptionChoice,
+        choice: AdoptionChoice,
     ) -> Vec<(ConditionId, Arc<AdoptedModels>)> {
         let mut adopted = Vec::new();
         for id in conditions {
             let Some(records) = self.state.records.conditions.get(id) else {
                 continue;
             };
-            if let Some(models) = records.adopted(offered, &self.record_channels(*id)) {
+            if let Some(models) = records.adopted(choice, &self.record_channels(*id)) {
                 adopted.push((*id, models));
             }
         }

@@ -78,8 +78,8 @@ impl GdcmApp {
             _ => "the records of the other conditions".to_owned(),
         };
         let sources = self.state.records.sources.clone();
-        let searched = ids.clone();
-        self.read_records_in_thread(name, sources, searched, move |channels, stop| {
+        let read_conditions = ids.clone();
+        self.read_records_in_thread(name, sources, read_conditions, move |channels, stop| {
             let mut found = ReadRecords::default();
             own.read(&ids, channels, &stop, &mut found)?;
             Ok(found)
@@ -143,12 +143,12 @@ impl GdcmApp {
     }
 
     /// Reads records in a thread; `sources` are the files and folders that were added earlier,
-    /// `searched` the conditions whose own records are read.
+    /// `read_conditions` the conditions whose own records are read.
     fn read_records_in_thread(
         &mut self,
         name: String,
         sources: Vec<PathBuf>,
-        searched: Vec<ConditionId>,
+        read_conditions: Vec<ConditionId>,
         read: impl FnOnce(&RecordChannels, Arc<AtomicBool>) -> Result<ReadRecords, FileError>
         + Send
         + 'static,
@@ -176,8 +176,8 @@ impl GdcmApp {
             if let Some(found) = found.and_then(|found| app.value_or_notify(found)) {
                 app.take_records(found, start);
             }
-            // Create entries, even without records, to prevent a repeated search.
-            for id in searched {
+            // Create entries, even without records, so that these are not read again.
+            for id in read_conditions {
                 app.records_of(id);
             }
         });
@@ -232,16 +232,16 @@ impl GdcmApp {
             records.rows = rows;
             records.clock_band_end = clock_band_end;
             leave_out_copies(&mut records.rows);
-            records.changed = true;
+            records.changed_since_fit = true;
         }
     }
 
     /// Adds records to their conditions, or to those without a condition; this can be undone:
     ///
-    /// 1. if a record has problems, unfold the columns, where they are solved;
-    /// 2. add the records condition by condition; where records are new, the identification is
-    ///    outdated, copies are left out, and the common clock counts as unknown if older records
-    ///    have another;
+    /// 1. if a record has problems, unfold the columns, where they can be resolved;
+    /// 2. add the records condition by condition ([`Self::add_to_condition`]); where this changes a
+    ///    condition's records, its identification is outdated, copies are left out, and the common
+    ///    clock counts as unknown if older records have another;
     /// 3. add the records without a condition;
     /// 4. record an undo step with what has changed, and report the counts.
     fn store_added_records(
@@ -263,35 +263,11 @@ impl GdcmApp {
         before.sources = Some(start.sources);
         // Step 2.
         let mut counts = AddedCounts::default();
-        let read_from = self.state.records.read_from.clone();
         for (id, rows) in added {
-            let channels = self.record_channels(id);
-            let records = self.records_of(id);
-            let has_this_clock =
-                records.rows.is_empty() || records.clock_band_end == start.clock_band_end;
-            let mut is_changed = false;
-            let mut has_new = false;
-            for row in rows {
-                let outcome = records.add_row(row, &read_from, &channels);
-                is_changed |= outcome != AddedRecord::KnownAlready;
-                has_new |= outcome == AddedRecord::New;
-                counts.count(outcome);
-            }
-            if has_new {
-                counts.conditions += 1;
-            }
+            let is_changed = self.add_to_condition(id, rows, start.clock_band_end, &mut counts);
             if !is_changed {
                 before.conditions.remove(&id);
-                continue;
             }
-            records.clock_band_end = if has_this_clock {
-                start.clock_band_end
-            } else {
-                None
-            };
-            leave_out_copies(&mut records.rows);
-            records.choose(records.chosen);
-            records.changed = true;
         }
         // Step 3.
         let unassigned_before = self.state.records.unassigned.clone();
@@ -307,6 +283,46 @@ impl GdcmApp {
             self.record_edited(RecordChange::Add { records }, before);
         }
         self.notify_done(Message::new("records-added", counts.words()));
+    }
+
+    /// Adds records, whose topics have the common clock for `clock_band_end` \[rad/s\], to a
+    /// condition, and counts them; returns whether the condition's records have changed.
+    fn add_to_condition(
+        &mut self,
+        id: ConditionId,
+        rows: Vec<LaidOutRecord>,
+        clock_band_end: Option<f64>,
+        counts: &mut AddedCounts,
+    ) -> bool {
+        let read_from = self.state.records.read_from.clone();
+        let channels = self.record_channels(id);
+        let records = self.records_of(id);
+        let all_have_same_clock =
+            records.rows.is_empty() || records.clock_band_end == clock_band_end;
+        let mut is_changed = false;
+        let mut has_new = false;
+        for row in rows {
+            let outcome = records.add_row(row, &read_from, &channels);
+            is_changed |= outcome != AddedRecord::KnownAlready;
+            has_new |= outcome == AddedRecord::New;
+            counts.count(outcome);
+        }
+        if has_new {
+            counts.conditions += 1;
+        }
+        if !is_changed {
+            return false;
+        }
+        records.clock_band_end = if all_have_same_clock {
+            clock_band_end
+        } else {
+            None
+        };
+        leave_out_copies(&mut records.rows);
+        // Keeps the displayed index within the rows.
+        records.choose(records.chosen);
+        records.changed_since_fit = true;
+        true
     }
 }
 

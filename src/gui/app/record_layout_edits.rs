@@ -1,6 +1,6 @@
 //! Edits to record layouts, which assign columns to channels. An edit to one record also changes
 //! similar records, in all conditions. A *listed* record is one that the dataset names, with its
-//! condition.
+//! condition. A record is *usable* if its layout has no problems.
 
 use std::sync::Arc;
 
@@ -31,8 +31,8 @@ impl GdcmApp {
         let change = LayoutChange {
             is_listed: row.table.entry_of_dataset(&dataset).is_some(),
             table: Arc::clone(&row.table),
-            former: row.layout.clone(),
-            layout: layout.assuming_units_of_channels(),
+            former_layout: row.layout.clone(),
+            new_layout: layout.assuming_units_of_channels(),
             dataset,
         };
         let columns = RecordChange::Columns {
@@ -65,7 +65,7 @@ impl GdcmApp {
             };
             let is_changed = change_layouts(&mut records.rows, &channels, &layout_for);
             if is_changed {
-                records.changed = true;
+                records.changed_since_fit = true;
                 changed.conditions.insert(id, before);
             }
         }
@@ -84,8 +84,8 @@ impl GdcmApp {
 struct LayoutChange {
     /// The edited record.
     table: Arc<RecordTable>,
-    former: RecordLayout,
-    layout: RecordLayout,
+    former_layout: RecordLayout,
+    new_layout: RecordLayout,
     /// Whether the dataset lists the record.
     is_listed: bool,
     dataset: Arc<Dataset>,
@@ -100,28 +100,28 @@ impl LayoutChange {
     /// 3. otherwise: the record's own layout with the same changes, as far as columns are alike.
     fn layout_for(&self, row: &LaidOutRecord) -> Option<RecordLayout> {
         // Rule 1.
-        if Arc::ptr_eq(&row.table, &self.table) && row.layout == self.former {
-            return Some(self.layout.clone());
+        if Arc::ptr_eq(&row.table, &self.table) && row.layout == self.former_layout {
+            return Some(self.new_layout.clone());
         }
         // Rule 2.
         if row.table.entry_of_dataset(&self.dataset).is_some() != self.is_listed {
             return None;
         }
         // Rule 3.
-        let change = [&self.former, &self.layout];
+        let change = [&self.former_layout, &self.new_layout];
         Some(row.layout.following(&row.table, change, &self.table))
     }
 }
 
-/// Changes the layouts of `rows`; returns whether a layout has changed. Records that become
-/// readable may turn out to be copies of others, which are then left out.
+/// Changes the layouts of `rows`; returns whether a layout has changed. Records that become usable
+/// may turn out to be copies of others, which are then left out.
 fn change_layouts(
     rows: &mut [LaidOutRecord],
     channels: &RecordChannels,
     layout_for: impl Fn(&LaidOutRecord) -> Option<RecordLayout>,
 ) -> bool {
     let mut is_changed = false;
-    let mut is_any_clear_now = false;
+    let mut has_newly_usable = false;
     for row in &mut *rows {
         let Some(layout) = layout_for(row) else {
             continue;
@@ -129,12 +129,12 @@ fn change_layouts(
         if layout == row.layout {
             continue;
         }
-        let was_clear = row.flight.is_some();
+        let was_usable = row.flight.is_some();
         *row = row.laid_out(layout, channels);
         is_changed = true;
-        is_any_clear_now |= !was_clear && row.flight.is_some();
+        has_newly_usable |= !was_usable && row.flight.is_some();
     }
-    if is_any_clear_now {
+    if has_newly_usable {
         leave_out_copies(rows);
     }
     is_changed

@@ -30,7 +30,7 @@ pub(super) struct ReadRecords {
     pub(super) own: BTreeMap<ConditionId, Vec<LaidOutRecord>>,
     /// Records from the files that the engineer added.
     pub(super) added: BTreeMap<ConditionId, Vec<LaidOutRecord>>,
-    /// Added records for which [`condition_of`] finds no condition.
+    /// Added records for which [`condition_of_added`] finds no condition.
     pub(super) unassigned: Vec<LaidOutRecord>,
     pub(super) faults: Vec<String>,
     /// File paths, by SHA-256.
@@ -79,6 +79,7 @@ impl OwnRecords {
         stop: &Arc<AtomicBool>,
         found: &mut ReadRecords,
     ) -> Result<(), FileError> {
+        // The dataset's own records are in the dataset's units unless their files say otherwise.
         let channels = channels.clone().of_named_records();
         for id in ids {
             let rows = found.own.entry(*id).or_default();
@@ -168,7 +169,7 @@ impl AddedFiles {
     /// 2. combine tables that are topics of one record;
     /// 3. assign columns to channels; units that neither the files nor the samples determine are
     ///    assumed to be the dataset's;
-    /// 4. assign each record to its condition ([`condition_of`]); others remain unassigned;
+    /// 4. assign each record to its condition ([`condition_of_added`]); others remain unassigned;
     /// 5. read these conditions' own records if they are not yet loaded.
     ///
     /// # Errors
@@ -202,7 +203,7 @@ impl AddedFiles {
             } else {
                 row.laid_out(layout, channels)
             };
-            match condition_of(&row, file.as_deref(), &self.own.dataset) {
+            match condition_of_added(&row, file.as_deref(), &self.own.dataset) {
                 Some(id) => found.added.entry(id).or_default().push(row),
                 None => found.unassigned.push(row),
             }
@@ -224,7 +225,7 @@ impl AddedFiles {
 ///    this number, or none, because an airspeed must not hide a wrong number;
 /// 4. one of these names states an airspeed: the only condition at this airspeed, if there is one;
 /// 5. none.
-fn condition_of(
+fn condition_of_added(
     row: &LaidOutRecord,
     file: Option<&Path>,
     dataset: &Dataset,

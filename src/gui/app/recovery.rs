@@ -2,7 +2,8 @@
 //! window that ended without saving them. `autosave.rs` keeps them.
 //!
 //! A *lost study* is the recovery file of such a window; an *offer* is the message bar about it,
-//! with a number by which the engineer's answer finds the lost study.
+//! with a number by which the engineer's answer finds the lost study. Decisions are *kept* once
+//! they are in the recovery file.
 
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
@@ -27,9 +28,9 @@ pub(super) const LAST_WAIT: Duration = Duration::from_secs(2);
 /// The recovery thread's handle, and the offers to restore lost studies.
 pub(super) struct Recovery {
     pub(super) autosave: Autosave,
-    /// Set once the window has drawn a frame; gives the code that opened the window access to the
-    /// autosave.
-    pub(super) drawn: Arc<OnceLock<Autosave>>,
+    /// Set in the first frame: the code that opened the window reports through it, after a fault,
+    /// where the unsaved decisions are.
+    pub(super) autosave_once_drawn: Arc<OnceLock<Autosave>>,
     /// Lost studies, indexed by offer number; `None` once restored or discarded.
     pub(super) offers: Vec<Option<LostStudy>>,
 }
@@ -55,9 +56,9 @@ impl GdcmApp {
         }
     }
 
-    /// Passes unsaved decisions to the recovery thread; if there are none, lets it delete the
-    /// recovery file.
-    pub(super) fn keep_unsaved(&self) {
+    /// Has the recovery thread write the unsaved decisions, or delete the recovery file if there
+    /// are none.
+    pub(super) fn update_recovery_file(&self) {
         if self.state.unsaved {
             let study = self.state.study.clone();
             let loaded = self.files.loaded.clone();
@@ -101,7 +102,7 @@ impl GdcmApp {
         self.files.saved.study = None;
         self.recovery.autosave.send(Task::Restored(lost));
         self.close_offer(offer);
-        self.look_for_recent();
+        self.list_open_file_as_recent();
         self.study_changed();
         self.notify_done(message);
     }
@@ -140,7 +141,8 @@ fn when(at: SystemTime, zone: &TimeZone) -> String {
         .to_string()
 }
 
-/// Returns the message on standard error after a fault has ended the window.
+/// Returns the message on standard error after a fault has ended the window; `remains` says which
+/// unsaved decisions are kept.
 pub(super) fn end_words(fault: &str, remains: &Remains) -> String {
     let fault = format!("a fault in the program closed the window: {fault}");
     match remains {

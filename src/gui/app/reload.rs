@@ -1,4 +1,6 @@
-//! Reloads the open dataset after its file has changed on disk.
+//! Reloads the open dataset after its file has changed on disk. Undo can return to the dataset
+//! before the reload, so datasets that a reload has replaced stay in memory
+//! (`DocumentFiles::replaced_datasets`).
 
 use std::sync::Arc;
 
@@ -22,7 +24,7 @@ impl GdcmApp {
         if self.files.loaded.path() != Some(&changed.path) {
             return;
         }
-        self.keep_open();
+        self.withdraw_reload_offer();
         if changed.sha256 != self.files.loaded.sha256 {
             self.state.notices.add_bar(MessageBar::Changed {
                 name: self.files.loaded.file_name(),
@@ -31,7 +33,7 @@ impl GdcmApp {
     }
 
     /// Closes the offer to reload; the next one appears when the file changes again.
-    pub(super) fn keep_open(&mut self) {
+    pub(super) fn withdraw_reload_offer(&mut self) {
         self.state
             .notices
             .close_bars(|bar| matches!(bar, MessageBar::Changed { .. }));
@@ -54,7 +56,7 @@ impl GdcmApp {
             // Ignore the result: another file has been opened in the meantime.
             return;
         }
-        self.keep_open();
+        self.withdraw_reload_offer();
         self.state
             .notices
             .close_bars(|bar| matches!(bar, MessageBar::Differences { .. }));
@@ -62,7 +64,7 @@ impl GdcmApp {
         let (study, differences) = self.state.study.reconciled(Arc::clone(&loaded.dataset));
         let before = std::mem::replace(&mut self.state.study, study);
         self.state.history.record_reload(before, name.clone());
-        self.files.earlier.push(loaded);
+        self.files.replaced_datasets.push(loaded);
         self.study_changed();
         if differences.is_empty() {
             let text = format!("reloaded {name}: every decision still applies");
@@ -75,17 +77,17 @@ impl GdcmApp {
         }
     }
 
-    /// Selects the file that belongs to the study's dataset, after a reload, or after an undo or
-    /// redo across a reload.
+    /// Makes the loaded dataset that of the study, after a reload, or after an undo or redo across
+    /// a reload.
     pub(super) fn select_dataset_file(&mut self) {
         let dataset = self.state.study.file_dataset();
-        let earlier = self
+        let of_study = self
             .files
-            .earlier
+            .replaced_datasets
             .iter_mut()
             .find(|loaded| Arc::ptr_eq(&loaded.dataset, dataset));
-        if let Some(earlier) = earlier {
-            std::mem::swap(&mut self.files.loaded, earlier);
+        if let Some(of_study) = of_study {
+            std::mem::swap(&mut self.files.loaded, of_study);
             self.state
                 .file_cautions
                 .clone_from(&self.files.loaded.cautions);

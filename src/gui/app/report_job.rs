@@ -1,7 +1,8 @@
 //! Writes the report in a background job, after asking for its path.
 //!
 //! The report is *composed* first, which takes seconds, and then written. The export dialog
-//! composes it while the engineer makes choices, and passes it on.
+//! composes it while the engineer makes choices, and passes it on. Its *inputs* are the displayed
+//! analysis (`shown`), the same with the current requirements, records, and identified poles.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -99,8 +100,8 @@ impl GdcmApp {
             return None;
         }
         let analysis = self.state.results.analysis.clone()?;
-        let known = self.state.forms.export.report_inputs.as_ref();
-        let inputs = match known {
+        let former_inputs = self.state.forms.export.report_inputs.as_ref();
+        let inputs = match former_inputs {
             // The source changes if the study is saved while the dialog is open.
             Some(inputs)
                 if Arc::ptr_eq(&inputs.shown, &analysis)

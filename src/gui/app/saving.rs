@@ -64,8 +64,8 @@ impl GdcmApp {
             path: Some(path),
             study: Some(self.state.study.clone()),
         };
-        self.keep_unsaved();
-        self.look_for_recent();
+        self.update_recovery_file();
+        self.list_open_file_as_recent();
         if self.postponed.goes_on_once_saved {
             self.go_on();
         }

@@ -26,9 +26,11 @@ pub struct Setup {
     pub home: Option<PathBuf>,
     /// Whether the first start offers the guided tour.
     pub offers_tour: bool,
-    /// Maximum time between a decision and its storage in the recovery file.
+    /// Maximum time between a decision and its storage in the recovery file: a longer time loses
+    /// more decisions in a crash, a shorter one writes the file more often.
     pub keep_after: Duration,
-    /// Interval between checks for changes in the dataset file.
+    /// Interval between checks for changes in the dataset file: a longer one delays the offer to
+    /// reload, a shorter one accesses the disk more often.
     pub look_every: Duration,
     pub preferences: Preferences,
     /// Problem found before the window was opened; shown first.
@@ -38,6 +40,7 @@ pub struct Setup {
 impl Default for Setup {
     fn default() -> Self {
         Self {
+            // Longer proofs of optimality run as jobs of their own.
             engine: Arc::new(|| {
                 Engine::with_executor(Box::new(Pool)).with_proofs_within(LIVE_PROOF)
             }),

@@ -19,6 +19,7 @@ impl GdcmApp {
             StudyCommand::DragEdit => self.set_setting_dragged(true),
             StudyCommand::EndEdit => {
                 self.set_setting_dragged(false);
+                // The next edit of the same setting is a separate undo step.
                 self.state.history.seal();
             }
             // A step may also contain an edit to flight records, which are not part of the study:
@@ -78,7 +79,8 @@ impl GdcmApp {
     /// constrained, the mark for unsaved decisions, the selected dataset file and the recovery
     /// file.
     pub(super) fn study_changed(&mut self) {
-        self.state.notices.follow_decision();
+        self.state.notices.drop_obsolete_toasts();
+        // Their net gains stay in the plot, so that a released response can be compared.
         self.state
             .display
             .gains
@@ -86,6 +88,6 @@ impl GdcmApp {
             .extend(self.state.study.settings.constrained.marked());
         self.state.unsaved = self.files.saved.study.as_ref() != Some(&self.state.study);
         self.select_dataset_file();
-        self.keep_unsaved();
+        self.update_recovery_file();
     }
 }

@@ -40,15 +40,17 @@ pub(super) fn curves_job(state: &State) -> CurvesJob {
     }
 }
 
-/// Returns the job that computes the trade-off over α in the displayed condition; `None` without an
-/// analysis, and while the settings are closed.
+/// Returns the job that computes the trade-off over α, the weight of the output gains' deviation
+/// from 1, in the displayed condition; `None` without an analysis, and while the settings, which
+/// show it, are closed.
 pub(super) fn trade_off_job(state: &State) -> Option<TradeOffJob> {
     state.settings_session.as_ref()?;
     TradeOffJob::new(state.analysis()?, state.condition().id())
 }
 
 /// Returns the job that computes the cost of constraining or releasing each response in the
-/// displayed condition; `None` without a result, and while a setting is dragged.
+/// displayed condition; `None` without a result, and while a setting is dragged, since the next
+/// value would outdate it.
 pub(super) fn toggles_job(state: &State) -> Option<TogglesJob> {
     if state.is_setting_dragged() {
         return None;

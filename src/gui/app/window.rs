@@ -87,7 +87,7 @@ impl GdcmApp {
             files: DocumentFiles {
                 loaded,
                 saved,
-                earlier: Vec::new(),
+                replaced_datasets: Vec::new(),
                 made_of_records: None,
                 last_folder: None,
                 disk,
@@ -110,14 +110,14 @@ impl GdcmApp {
             },
             recovery: Recovery {
                 autosave,
-                drawn: Arc::default(),
+                autosave_once_drawn: Arc::default(),
                 offers: Vec::new(),
             },
             next_focus: None,
             title: String::new(),
         };
         app.show_first_page(setup.trouble, setup.offers_tour);
-        app.look_for_recent();
+        app.list_open_file_as_recent();
         Ok(app)
     }
 
@@ -148,12 +148,12 @@ impl GdcmApp {
         self.ctx.input(|input| input.time)
     }
 
-    /// Opens or imports the files dropped on the window:
+    /// Opens or imports the files dropped on the window, by the first rule that applies:
     ///
     /// 1. while models are imported, everything is added to the import;
-    /// 2. else a single dataset or study is opened;
-    /// 3. else, while the Records view is shown, the files are added as records;
-    /// 4. else several files, a folder, and files from other programs are imported as models.
+    /// 2. a single dataset or study is opened;
+    /// 3. while the Records view is shown, the files are added as records;
+    /// 4. several files, a folder, and files from other programs are imported as models.
     fn take_dropped_files(&mut self, commands: &mut Vec<Command>) {
         let dropped = self.ctx.input(|input| input.raw.dropped_files.clone());
         let paths: Vec<PathBuf> = dropped
@@ -162,19 +162,18 @@ impl GdcmApp {
             .collect();
         let is_importing = self.state.assembling.is_some();
         let arrangement = &self.state.display.layout.arrangement;
-        match paths.as_slice() {
-            [] => {}
-            [path] if !is_importing && !holds_models(path) => {
-                // Rule 2.
-                commands.push(FileCommand::Open(path.clone()).into())
-            }
-            _ if !is_importing && arrangement.is_shown(View::Records) => {
-                // Rule 3.
-                commands.push(RecordsCommand::Add(paths).into());
-            }
-            // Rules 1 and 4.
-            _ => commands.push(AssemblingCommand::Add(paths).into()),
-        }
+        let command: Command = match paths.as_slice() {
+            [] => return,
+            // Rule 1.
+            _ if is_importing => AssemblingCommand::Add(paths).into(),
+            // Rule 2.
+            [path] if !holds_models(path) => FileCommand::Open(path.clone()).into(),
+            // Rule 3.
+            _ if arrangement.is_shown(View::Records) => RecordsCommand::Add(paths).into(),
+            // Rule 4.
+            _ => AssemblingCommand::Add(paths).into(),
+        };
+        commands.push(command);
     }
 
     /// Asks for confirmation before closing the window loses unsaved decisions.
@@ -242,9 +241,9 @@ impl eframe::App for GdcmApp {
         tour::tour_ui(&ctx, &self.state, &palette, &mut commands);
         focus_ring::focus_ring_ui(&ctx, &palette);
         escape_key::note_focus(&ctx);
-        // The first frame hands over the autosave; see `launch.rs`.
+        // The first frame hands the autosave over to `launch.rs`.
         self.recovery
-            .drawn
+            .autosave_once_drawn
             .get_or_init(|| self.recovery.autosave.clone());
         // 2. The commands change the state.
         self.carry_out(commands);

@@ -24,7 +24,7 @@ use crate::gui::widgets::palette::Palette;
 use crate::gui::widgets::panel_layout::restore_panel_size;
 
 /// Minimum window width \[pt\] for full names and, unless the engineer has chosen otherwise, for
-/// the full left panel.
+/// the full left panel: a smaller value would leave less room for the plots beside both panels.
 const WIDE: f32 = 1400.0;
 
 /// Draws the bars at the top and at the foot, and between them: the model import, if it is open;
@@ -64,8 +64,9 @@ pub(super) fn panels_ui(
     sheets_ui(ui, centre, state, palette, commands);
 }
 
-/// Maximum height of the condition list, as a share of the left panel's height. The list's height
-/// depends on the dataset alone, so that it looks the same beside every view.
+/// Maximum height of the condition list, as a share of the left panel's height; the models, records
+/// or settings below it have the rest. The list's height depends on the dataset alone, so that it
+/// looks the same beside every view.
 const CONDITIONS_PART: f32 = 0.365;
 
 /// Draws the left panel: as a narrow rail, with the settings beside it while they are open; or in

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use gdcm_model::message_text::{sanitized, sanitized_path};
 
-/// Usable zoom factors.
+/// Usable zoom factors: those that egui lets the user choose with the keyboard.
 const ZOOM: RangeInclusive<f64> = 0.2..=5.0;
 
 /// Replaces an unusable zoom factor in eframe's preferences file with 1, and returns a caution;

@@ -118,13 +118,13 @@ fn record_entries(state: &State) -> [Entry; 4] {
         Entry::new(
             "Use the identified models",
             here,
-            RecordsCommand::Take(AdoptionChoice::REFINED),
+            RecordsCommand::Adopt(AdoptionChoice::REFINED),
         )
         .enabled(is_found),
         Entry::new(
             "Restore the file's identified models",
             here,
-            RecordsCommand::Return,
+            RecordsCommand::RestoreFileModels,
         )
         .enabled(is_taken),
     ]

@@ -37,7 +37,8 @@ pub enum RecordsCommand {
     AskDataset,
     /// Makes a dataset with the requested channels, and opens it.
     MakeDataset,
-    Choose(usize),
+    /// Displays a record.
+    ChooseRecord(usize),
     /// Uses a record (`true`), or leaves it out.
     SetUsed(usize, bool),
     /// Holds a record out from the fit for validation (`true`), or fits it.
@@ -82,20 +83,19 @@ pub enum RecordsCommand {
     RemovePart(usize),
     /// Shows an input's spectrogram beside the records over time; `None` hides it.
     ShowSpectrogram(Option<usize>),
-    Show(RecordsPage),
+    ShowPage(RecordsPage),
     /// Identifies models for the displayed condition.
     Identify,
     /// Identifies models for every condition with used records, the displayed one first. Conditions
     /// with a current fit, or whose identification waits or runs, are left out, unless no others
     /// remain.
     IdentifyAll,
-    /// Stops the identification.
-    Stop,
-    /// Puts the identified models into the displayed condition.
-    Take(AdoptionChoice),
-    /// Puts the models from each finished fit that is not yet in the study into the fit's
-    /// condition.
-    TakeAll(AdoptionChoice),
+    /// Stops running and waiting identifications.
+    StopIdentifying,
+    /// Replaces the displayed condition's identified models by those found from its records.
+    Adopt(AdoptionChoice),
+    /// The same for every condition with a finished fit whose models are not yet in the study.
+    AdoptAll(AdoptionChoice),
     /// Restores the models from the dataset's file in the displayed condition.
-    Return,
+    RestoreFileModels,
 }

@@ -2,7 +2,8 @@
 //!
 //! A held (constrained) response has its net gain matched exactly, its delay as far as possible.
 //! Its gain is matched unless the constraints conflict, that is, unless no gains within their
-//! bounds meet all of them; a remedy is a single change that resolves the conflict. Couplings mix
+//! bounds meet all of them; a remedy is a single change that resolves the conflict. A doubt is an
+//! apparent difference in sign or unit between the physics and the identified models. Couplings mix
 //! the inputs and feed outputs back to them (M16: docs/couplings.md).
 
 use gdcm_method::correction::Channel;
@@ -80,7 +81,9 @@ impl Advice {
         }
     }
 
-    /// Recommends the first step that applies:
+    /// Recommends the first step that applies. Steps come before those whose result they change: a
+    /// sign or another bundle changes every value, a constraint the gains, the gains come before
+    /// phases and couplings.
     ///
     /// 1. Reverse a channel whose sign is doubtful.
     /// 2. Reject the suggested physics models.
@@ -92,7 +95,11 @@ impl Advice {
     /// 7. Export.
     pub(super) fn new(state: &State, shown: &ConditionAnalysis) -> Self {
         // Step 1.
-        if let Some(channel) = shown.doubts.iter().find_map(|doubt| doubt.turns()) {
+        let reversed = shown
+            .doubts
+            .iter()
+            .find_map(|doubt| doubt.channel_to_reverse());
+        if let Some(channel) = reversed {
             return Self::reverse_channel(state, channel);
         }
         // Step 2.
@@ -153,7 +160,7 @@ impl Advice {
     /// Recommends using worthwhile couplings, or switching off couplings that are not worth it or
     /// make poles within the band unstable; `None` if neither applies.
     fn on_couplings(state: &State) -> Option<Self> {
-        let look = Step::new(
+        let inspect = Step::new(
             INSPECT,
             Command::Layout(LayoutCommand::ShowView(View::Couplings)),
         );
@@ -163,7 +170,7 @@ impl Advice {
                 setting_table::COUPLINGS.to(assessment.couplings),
             );
             return Some(Self {
-                steps: vec![use_them, look],
+                steps: vec![use_them, inspect],
                 note: off_axis_note(cost),
             });
         }
@@ -172,12 +179,12 @@ impl Advice {
         if cost.is_worth_it() && used.unstable_in_band() == 0 {
             return None;
         }
-        let leave_them = Step::new(
+        let switch_off = Step::new(
             "Switch couplings off",
             setting_table::COUPLINGS.to(CouplingCorrection::None),
         );
         Some(Self {
-            steps: vec![leave_them, look],
+            steps: vec![switch_off, inspect],
             note: off_axis_note(cost),
         })
     }
@@ -217,6 +224,7 @@ fn gain_steps(state: &State, shown: &ConditionAnalysis) -> Vec<Step> {
                 setting_table::GAIN_BOUNDS.to(range),
             ));
         }
+        // `free` lists the responses whose release alone resolves the conflict.
         if let Some(pair) = remedy.free.first() {
             steps.push(release_step(state, *pair));
         }

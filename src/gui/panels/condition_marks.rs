@@ -1,8 +1,9 @@
 //! Marks in the conditions list: open tasks, role in the schedule.
 //!
 //! Open tasks are suggested outliers (physics models that the analysis proposes to reject; M5:
-//! docs/method.md) and held responses whose gain or delay is not matched. A condition left out of
-//! the schedule does not enter its fit; a held-out one validates the schedule instead.
+//! docs/method.md) and held (constrained) responses whose gain or delay is not matched. A condition
+//! left out of the schedule does not enter its fit; a held-out condition validates the schedule
+//! instead.
 
 use egui::{Rect, RichText, Stroke, Ui};
 
@@ -59,12 +60,13 @@ impl Marks {
                 marks.unmatched_gains = result.gains.unmatched.len();
                 let has_leads = result.has_leads();
                 marks.counts_leads = has_leads;
-                marks.unmatched_delays = result
-                    .delays
-                    .unmatched
-                    .iter()
-                    .filter(|missed| has_leads || missed.delta >= 0.0)
-                    .count();
+                for missed in &result.delays.unmatched {
+                    // A negative D needs phase lead.
+                    let needs_lead = missed.delta < 0.0;
+                    if has_leads || !needs_lead {
+                        marks.unmatched_delays += 1;
+                    }
+                }
             }
         }
         marks

@@ -1,5 +1,6 @@
-//! Condition rows: number, mark, airspeed, and cost-map cells. The list and the rail lay them out
-//! differently; `cost_picture.rs` paints some rows as a picture.
+//! Condition rows: number, symbol of the flight state, airspeed, and cost-map cells, with marks for
+//! open tasks (`condition_marks.rs`). The list and the rail lay them out differently;
+//! `cost_picture.rs` paints some rows as a picture.
 //!
 //! The cost J of a response's mismatch has a magnitude and a phase part (M4: docs/method.md); a
 //! cell shows both. The rail is the narrow form of the left panel.
@@ -44,8 +45,8 @@ pub(super) struct ConditionRows<'a> {
 struct RowLayout {
     /// Right edge of the condition number.
     number_end: f32,
-    /// Centre of the flight-state mark; `None` without marks.
-    mark_center: Option<f32>,
+    /// Centre of the flight-state symbol; `None` without symbols.
+    symbol_center: Option<f32>,
     /// Right edge of the airspeed.
     airspeed_end: f32,
     cells_left: f32,
@@ -54,11 +55,11 @@ struct RowLayout {
 }
 
 impl RowLayout {
-    /// Returns the room between the condition number, or its mark, and the right edge of the
+    /// Returns the room between the condition number, or its symbol, and the right edge of the
     /// airspeed \[pt\].
     fn airspeed_room(&self) -> f32 {
-        let left = match self.mark_center {
-            Some(center) => center + MARK_RADIUS,
+        let left = match self.symbol_center {
+            Some(center) => center + SYMBOL_REACH,
             None => self.number_end + AIRSPEED_GAP,
         };
         self.airspeed_end - left
@@ -78,7 +79,7 @@ fn airspeed_text(ui: &Ui, airspeed_kt: f64, room: f32) -> String {
 
 const LIST: RowLayout = RowLayout {
     number_end: 20.0,
-    mark_center: Some(33.0),
+    symbol_center: Some(33.0),
     airspeed_end: 78.0,
     cells_left: 88.0,
     height: 20.0,
@@ -86,7 +87,7 @@ const LIST: RowLayout = RowLayout {
 
 const RAIL: RowLayout = RowLayout {
     number_end: 20.0,
-    mark_center: None,
+    symbol_center: None,
     airspeed_end: 50.0,
     cells_left: 60.0,
     height: 24.0,
@@ -98,15 +99,15 @@ const MOST_PITCH: f32 = 26.0;
 pub(super) const HALF_CELL_WIDTH: f32 = 10.0;
 /// Minimum gap between two cells \[pt\].
 const LEAST_GAP: f32 = 3.0;
-/// Minimum distance between the centre of a flight-state mark and the airspeed \[pt\].
-const MARK_RADIUS: f32 = 6.5;
+/// Minimum distance between the centre of a flight-state symbol and the airspeed \[pt\].
+const SYMBOL_REACH: f32 = 6.5;
 /// Minimum gap between the number and the airspeed of a condition \[pt\].
 const AIRSPEED_GAP: f32 = 6.0;
 /// Width of the frame around the cell in focus \[pt\].
 const FOCUS_WIDTH: f32 = 1.5;
 /// Cell height \[pt\].
 pub(super) const CELL_HEIGHT: f32 = 12.0;
-/// Space at a row's right end, for the mark that shows open tasks \[pt\].
+/// Space at a row's right end, for the mark about open tasks \[pt\].
 const MARK_ROOM: f32 = 16.0;
 
 impl<'a> ConditionRows<'a> {
@@ -183,10 +184,10 @@ impl<'a> ConditionRows<'a> {
         cell.expand2(vec2(margin, 2.0))
     }
 
-    /// Paints a condition's mark as in the Net gain view: the shape shows the altitude class (a
-    /// circle for the first, else a square on its corner), the fill the weight class (filled for
+    /// Paints a flight state's symbol as in the Net gain view: the shape shows the altitude class
+    /// (a circle for the first, else a square on its corner), the fill the weight class (filled for
     /// the first).
-    pub(super) fn paint_mark(
+    pub(super) fn paint_symbol(
         &self,
         ui: &Ui,
         at: Pos2,
@@ -298,9 +299,9 @@ impl<'a> ConditionRows<'a> {
             body(),
             color,
         );
-        if let Some(center) = self.layout.mark_center {
+        if let Some(center) = self.layout.symbol_center {
             let at = pos2(row.left() + center, row.center().y);
-            self.paint_mark(ui, at, flight_state, palette);
+            self.paint_symbol(ui, at, flight_state, palette);
         }
         self.cells_ui(ui, row, &marks, palette, commands);
         marks.paint(ui, row, palette);

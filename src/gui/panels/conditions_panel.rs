@@ -1,7 +1,9 @@
 //! List of flight conditions with the cost map, and the map's key.
 //!
 //! The cost map shades J, the cost of a response's mismatch (M4: docs/method.md), in its magnitude
-//! and its phase part, for the held (constrained) responses in every condition.
+//! and its phase part, for the held (constrained) responses in every condition. The shades are
+//! interpolated between colours for the costs [`HEAT_COSTS`], with increasing contrast to the
+//! background.
 
 use egui::{Align2, Mesh, Rect, Sense, Ui, pos2, vec2};
 

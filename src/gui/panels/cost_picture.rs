@@ -26,7 +26,7 @@ pub(super) fn cost_picture_height(state: &State) -> f32 {
     PICTURE_HEAD + PICTURE_ROW * rows as f32
 }
 
-/// Paints the first conditions as a picture without interaction: marks, airspeeds and costs.
+/// Paints the first conditions as a picture without interaction: symbols, airspeeds and costs.
 pub fn cost_picture_ui(ui: &Ui, area: Rect, state: &State, palette: &Palette) {
     let map = ConditionRows::picture(state, PICTURE_CELLS_LEFT, area.width());
     for (place, column) in map.columns().iter().enumerate() {
@@ -51,7 +51,7 @@ pub fn cost_picture_ui(ui: &Ui, area: Rect, state: &State, palette: &Palette) {
             vec2(area.width(), PICTURE_ROW),
         );
         let flight_state = condition.flight_state();
-        map.paint_mark(
+        map.paint_symbol(
             ui,
             pos2(row.left() + 6.0, row.center().y),
             flight_state,

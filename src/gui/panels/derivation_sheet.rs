@@ -1,6 +1,6 @@
-//! Derivation of a value ("How was this computed?"): its sheet, and the labels and menus that open
-//! it. For G and D, the sheet also shows how constraining or releasing the response would change
-//! the objective.
+//! Derivation of a value ("How was this computed?"): its equation, the equation with numbers, and
+//! what it is based on. Here are its sheet, and the labels and menus that open it. For G and D, the
+//! sheet also shows how constraining or releasing the response would change the objective.
 //!
 //! G and D are the gain and the delay that would match a response (M6: docs/method.md). The
 //! objective is that of the fit of the channels' gains or delays.
@@ -96,17 +96,17 @@ fn toggle_costs_ui(ui: &mut Ui, state: &State, asked: &ExplainTarget, palette: &
     else {
         return;
     };
-    let costs = if *condition == state.condition().id() {
-        toggle_costs(state, *pair)
+    let texts = if *condition == state.condition().id() {
+        toggle_cost_texts(state, *pair)
     } else {
         Vec::new()
     };
-    if !costs.is_empty() {
+    if !texts.is_empty() {
         ui.add_space(4.0);
         ui.label(palette.small("Cost of holding or releasing this response"));
     }
-    for cost in costs {
-        ui.label(RichText::new(cost).size(SMALL_SIZE));
+    for text in texts {
+        ui.label(RichText::new(text).size(SMALL_SIZE));
     }
 }
 
@@ -151,21 +151,21 @@ pub fn question_menu_ui(
 
 /// Describes how constraining or releasing a response would change the objective; empty until
 /// computed for the displayed result.
-pub fn toggle_costs(state: &State, pair: Pair) -> Vec<String> {
+pub fn toggle_cost_texts(state: &State, pair: Pair) -> Vec<String> {
     let Some(toggles) = state.toggles() else {
         return Vec::new();
     };
     let (inputs, outputs) = state.dataset().input_and_output_names();
     let (gain, delay) = toggles.of_pair(pair);
-    let mut costs = Vec::new();
+    let mut texts = Vec::new();
     if let Some(toggle) = gain {
-        costs.push(format!("Gains: {}", toggle_text(toggle, &inputs, &outputs)));
+        texts.push(format!("Gains: {}", toggle_text(toggle, &inputs, &outputs)));
     }
     if let Some(toggle) = delay {
-        costs.push(format!(
+        texts.push(format!(
             "Delays: {}",
             toggle_text(toggle, &inputs, &outputs)
         ));
     }
-    costs
+    texts
 }

@@ -23,14 +23,14 @@ use crate::gui::widgets::window_regions::{Region, region_ui};
 pub(super) fn dock_ui(
     ui: &mut Ui,
     state: &mut State,
-    view: View,
+    page: View,
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
     let window = ui.ctx().content_rect().height();
     let arrangement = &state.display.layout.arrangement;
     let dock = Dock {
-        view: present_page(state, view),
+        page: present_page(state, page),
         is_open: arrangement.is_dock_open(window >= LEAST_WITH_DOCK),
         is_enlarged: arrangement.is_dock_enlarged(),
     };
@@ -59,7 +59,7 @@ pub(super) fn dock_ui(
         clipped_ui(ui, "dock content", area, padding, |ui| {
             dock_head_ui(ui, state, dock, palette, commands);
             if dock.is_open {
-                let draw = view_content(dock.view).draw;
+                let draw = view_content(dock.page).draw;
                 region_ui(ui, Region::Dock, |ui| draw(ui, state, palette, commands));
             }
         });
@@ -70,9 +70,11 @@ pub(super) fn dock_ui(
 const FOLDED: f32 = 34.0;
 /// Minimum window height at which the dock is unfolded by default \[pt\].
 const LEAST_WITH_DOCK: f32 = 680.0;
-/// Default dock height, as a share of the window height.
+/// Default dock height, as a share of the window height: a larger share would take height
+/// from the view above.
 const DOCK_PART: f32 = 0.252;
-/// Maximum height of the enlarged dock, as a share of the window height.
+/// Maximum height of the enlarged dock, as a share of the window height; the view above it stays
+/// visible.
 const MOST_PART: f32 = 0.66;
 /// Minimum height of the unfolded dock \[pt\].
 const LEAST_OPEN: f32 = 140.0;
@@ -109,7 +111,7 @@ fn present_page(state: &State, page: View) -> View {
 /// The dock's page, whether the dock is unfolded, and whether its height is doubled.
 #[derive(Clone, Copy)]
 struct Dock {
-    view: View,
+    page: View,
     is_open: bool,
     is_enlarged: bool,
 }
@@ -147,16 +149,16 @@ fn dock_head_ui(
         |ui| {
             ui.set_min_size(vec2(width, FOLDED));
             if dock.is_open {
-                tools_ui(ui, state, dock.view, palette, commands);
+                tools_ui(ui, state, dock.page, palette, commands);
             }
             let rest = ui.available_rect_before_wrap();
             in_line_ui(ui, rest, false, |ui| {
                 fold_ui(ui, dock.is_open, palette, commands);
-                dock_pages_ui(ui, state, dock.view, palette, commands);
+                dock_pages_ui(ui, state, dock.page, palette, commands);
                 ui.add_space(4.0);
                 // Selectable text would take the double click from the bar.
                 ui.style_mut().interaction.selectable_labels = false;
-                title_ui(ui, state, view_content(dock.view).title, palette);
+                title_ui(ui, state, view_content(dock.page).title, palette);
             });
         },
     );
@@ -180,35 +182,35 @@ fn fold_ui(ui: &mut Ui, is_open: bool, palette: &Palette, commands: &mut Vec<Com
 fn dock_pages_ui(
     ui: &mut Ui,
     state: &State,
-    front: View,
+    shown_page: View,
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    let views: Vec<View> = View::docked(state.study.settings.phase).collect();
-    if let [only] = views[..] {
+    let pages: Vec<View> = View::docked(state.study.settings.phase).collect();
+    if let [only] = pages[..] {
         let name = only.name();
         ui.label(RichText::new(name).font(medium(BODY_SIZE)));
         return;
     }
     let is_narrow =
-        page_switch_width(ui, views.iter().map(|view| view.name())) > ui.available_width();
+        page_switch_width(ui, pages.iter().map(|page| page.name())) > ui.available_width();
     let mut tabs = Vec::new();
-    for view in &views {
-        let short_name = match view {
+    for page in &pages {
+        let short_name = match page {
             View::ScheduleCost if is_narrow => "Cost",
-            _ => view.name(),
+            _ => page.name(),
         };
         tabs.push(PageTab {
             words: PageWords {
-                name: view.name(),
+                name: page.name(),
                 short_name,
-                purpose: view.facts().purpose,
+                purpose: page.facts().purpose,
             },
-            is_shown: *view == front,
+            is_shown: *page == shown_page,
         });
     }
     if let Some(clicked) = page_switch_ui(ui, &tabs, palette) {
-        commands.push(LayoutCommand::ShowInDock(views[clicked]).into());
+        commands.push(LayoutCommand::ShowInDock(pages[clicked]).into());
     }
 }
 

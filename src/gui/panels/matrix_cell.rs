@@ -40,7 +40,8 @@ const HOLD_BOX_SIZE: f32 = 13.0;
 /// Margin around the box that also reacts to the pointer \[pt\].
 const HOLD_BOX_MARGIN: f32 = 2.0;
 
-/// Part of J (magnitude or phase) at which an underline spans its cell.
+/// Part of J (magnitude or phase) at which an underline spans its cell: a larger value would
+/// shorten the underlines of small costs, a smaller one would give more costs the same full length.
 const FULL_COST: f64 = 60.0;
 
 /// The matrix's area in the panel.
@@ -58,7 +59,7 @@ pub(super) struct Cell<'a> {
     /// Whether the large plot shows the response.
     focused: bool,
     constrained: bool,
-    /// Whether the response has weight in the objective.
+    /// Whether the response has weight in the objective; the engineer may ignore it there.
     fitted: bool,
     /// Whether the response's gain constraint conflicts with others.
     in_conflict: bool,

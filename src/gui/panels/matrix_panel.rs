@@ -36,6 +36,9 @@ const ROW_LABEL_WIDTH: f32 = 28.0;
 /// Height for the input names above the columns \[pt\].
 const HEADER_HEIGHT: f32 = 20.0;
 
+/// Minimum width of the title line with room for the symbol of the underlined cost \[pt\].
+const LEAST_WITH_SYMBOL: f32 = 310.0;
+
 /// Space for the matrix with its title.
 #[derive(Clone, Copy)]
 pub struct MatrixSpace {
@@ -55,7 +58,6 @@ pub fn matrix_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    let room = space.height;
     let (rect, heading) =
         ui.allocate_exact_size(vec2(ui.available_width(), TITLE_HEIGHT), Sense::hover());
     painted_text(
@@ -69,9 +71,9 @@ pub fn matrix_ui(
     key_ui(ui, rect, palette);
     table_menu_ui(ui, &heading, TableKind::Matrix, commands);
     let outputs = state.dataset().outputs().len();
-    let pitch = (room - TITLE_HEIGHT - HEADER_HEIGHT) / outputs as f32;
+    let pitch = (space.height - TITLE_HEIGHT - HEADER_HEIGHT) / outputs as f32;
     let grid = CellGrid {
-        room: room - TITLE_HEIGHT,
+        visible_height: space.height - TITLE_HEIGHT,
         has_card: space.has_card,
         cell_height: (pitch - GAP).clamp(LEAST_CELL_HEIGHT, MOST_CELL_HEIGHT),
     };
@@ -94,7 +96,8 @@ fn key_ui(ui: &Ui, row: Rect, palette: &Palette) {
         ui.painter().rect_filled(mark, 1.5, color);
         right = mark.left() - 10.0;
     }
-    if row.width() > 310.0 {
+    // In a narrow panel, the title leaves no room for the symbol.
+    if row.width() > LEAST_WITH_SYMBOL {
         painted_text(
             ui,
             row.with_max_x(right),
@@ -108,8 +111,7 @@ fn key_ui(ui: &Ui, row: Rect, palette: &Palette) {
 
 /// Layout of cells and channel names \[pt\].
 struct CellGrid {
-    /// Visible height.
-    room: f32,
+    visible_height: f32,
     /// Whether the focused response's card is below the matrix.
     has_card: bool,
     cell_height: f32,
@@ -128,11 +130,14 @@ impl CellGrid {
             ROW_LABEL_WIDTH + column_pitch * inputs.len() as f32 - GAP,
             HEADER_HEIGHT + row_pitch * outputs.len() as f32,
         );
-        let (in_conflict, blamed) = state.shown().map(gain_conflict_marks).unwrap_or_default();
+        let marks = match state.shown() {
+            Some(shown) => MatrixMarks::new(shown),
+            None => MatrixMarks::default(),
+        };
         let focus = state.display.selection.pair;
         ScrollArea::both()
             .id_salt("constraint matrix")
-            .max_height(self.room)
+            .max_height(self.visible_height)
             .show(ui, |ui| {
                 let (area, _) = ui.allocate_exact_size(size, Sense::hover());
                 let matrix = MatrixPlace {
@@ -150,7 +155,7 @@ impl CellGrid {
                         name: &channel.name,
                         place: places.input_name(input),
                         align: Align2::CENTER_CENTER,
-                        is_blamed: blamed.contains(&Channel::Input(input)),
+                        is_marked: marks.channels.contains(&Channel::Input(input)),
                         is_focused: input == focus.input,
                     }
                     .paint(ui, palette);
@@ -160,13 +165,13 @@ impl CellGrid {
                         name: &channel.name,
                         place: places.output_name(output),
                         align: Align2::RIGHT_CENTER,
-                        is_blamed: blamed.contains(&Channel::Output(output)),
+                        is_marked: marks.channels.contains(&Channel::Output(output)),
                         is_focused: output == focus.output,
                     }
                     .paint(ui, palette);
                     for input in 0..inputs.len() {
                         let pair = Pair { output, input };
-                        Cell::new(state, pair, in_conflict.contains(&pair), matrix).ui(
+                        Cell::new(state, pair, marks.pairs.contains(&pair), matrix).ui(
                             ui,
                             places.cell(pair),
                             palette,
@@ -223,21 +228,21 @@ struct ChannelName<'a> {
     name: &'a str,
     place: Pos2,
     align: Align2,
-    /// Whether the channel is involved in a gain conflict, or has a doubtful sign or unit.
-    is_blamed: bool,
+    /// Whether the channel is marked ([`MatrixMarks::channels`]).
+    is_marked: bool,
     is_focused: bool,
 }
 
 impl ChannelName<'_> {
     fn paint(&self, ui: &Ui, palette: &Palette) {
-        let color = if self.is_blamed {
+        let color = if self.is_marked {
             palette.warning
         } else if self.is_focused {
             palette.text
         } else {
             palette.dim_text
         };
-        let font = if self.is_focused && !self.is_blamed {
+        let font = if self.is_focused && !self.is_marked {
             medium(SMALL_SIZE)
         } else {
             small()
@@ -247,15 +252,26 @@ impl ChannelName<'_> {
     }
 }
 
-/// Returns the responses with conflicting gain constraints; and the channels involved in these
-/// conflicts, with those whose sign or unit is doubtful.
-pub fn gain_conflict_marks(shown: &ConditionAnalysis) -> (BTreeSet<Pair>, BTreeSet<Channel>) {
-    let mut pairs = BTreeSet::new();
-    let mut channels = BTreeSet::new();
-    for conflict in &shown.gains.conflicts {
-        pairs.extend(conflict.entries.iter().copied());
-        channels.extend(conflict.channels());
+/// Responses and channels drawn as warnings in the matrix.
+#[derive(Debug, Default)]
+pub struct MatrixMarks {
+    /// Responses with conflicting gain constraints.
+    pub pairs: BTreeSet<Pair>,
+    /// Channels involved in these conflicts, and channels whose sign or unit is doubtful.
+    pub channels: BTreeSet<Channel>,
+}
+
+impl MatrixMarks {
+    /// Collects the marks for a condition's result.
+    pub fn new(shown: &ConditionAnalysis) -> Self {
+        let mut marks = Self::default();
+        for conflict in &shown.gains.conflicts {
+            marks.pairs.extend(conflict.entries.iter().copied());
+            marks.channels.extend(conflict.channels());
+        }
+        for doubt in &shown.doubts {
+            marks.channels.insert(doubt.channel);
+        }
+        marks
     }
-    channels.extend(shown.doubts.iter().map(|doubt| doubt.channel));
-    (pairs, channels)
 }

@@ -73,7 +73,7 @@ pub fn bundle_sheet_ui(
     // No heading is drawn here: the sheet has its own.
     region_ui(ui, Region::Models, |ui| {
         if kind == BundleKind::Physics {
-            at_once_ui(ui, state, palette, commands);
+            all_models_ui(ui, state, palette, commands);
         }
         rows_ui(ui, state, palette, kind, commands);
     });
@@ -91,22 +91,25 @@ fn physics_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<
         kind: TableKind::of_bundle(kind),
     };
     heading.ui(ui, palette, commands);
-    at_once_ui(ui, state, palette, commands);
+    all_models_ui(ui, state, palette, commands);
     rows_ui(ui, state, palette, kind, commands);
 }
 
 /// Draws the counts of suggested and rejected physics models, and the actions on all at once, above
 /// the list so that they do not scroll: *Restore all*, if a model in either bundle is rejected, and
-/// *Reject* for suggested outliers, if the verdict recommends another step first.
-fn at_once_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+/// *Reject* for suggested outliers, if the verdict recommends to reverse a doubtful sign first.
+fn all_models_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let condition = state.condition().id();
     let choice = state.study.choice(condition);
     let open = match state.shown() {
         Some(shown) => state.open_suggestions(shown),
         None => Vec::new(),
     };
-    let is_other_step_first = match state.shown() {
-        Some(shown) => shown.doubts.iter().any(|doubt| doubt.turns().is_some()),
+    let has_doubtful_sign = match state.shown() {
+        Some(shown) => shown
+            .doubts
+            .iter()
+            .any(|doubt| doubt.channel_to_reverse().is_some()),
         None => false,
     };
     let size = vec2(ui.available_width(), 28.0);
@@ -126,7 +129,7 @@ fn at_once_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<
                     .asks(Edit::RestoreAll { condition }, commands);
             }
             // The verdict has this button, unless a doubtful sign comes first.
-            if !open.is_empty() && is_other_step_first {
+            if !open.is_empty() && has_doubtful_sign {
                 let hint = format!("Discontinuity ratio above {SUGGESTION_RATIO} (Ctrl+R)");
                 named(ui.button("Reject"), Role::Button, "Reject suggested models")
                     .on_hover_text(hint)

@@ -50,7 +50,7 @@ struct PhaseSketch {
     /// Phases of the corrected model at each step \[deg\].
     corrected: Vec<f64>,
     /// Phases of the identified model at each step \[deg\].
-    flight: Vec<f64>,
+    identified: Vec<f64>,
 }
 
 impl PhaseSketch {
@@ -60,18 +60,18 @@ impl PhaseSketch {
         let min = band.min();
         let max = band.max();
         let corrected = phases(curve_of_role(curves, Role::Corrected)?, min, max);
-        let flight = phases(
+        let identified = phases(
             curve_of_role(curves, Role::IdentifiedRepresentative)?,
             min,
             max,
         );
         let mut least = f64::INFINITY;
         let mut most = f64::NEG_INFINITY;
-        for phase in corrected.iter().chain(&flight) {
+        for phase in corrected.iter().chain(&identified) {
             least = least.min(*phase);
             most = most.max(*phase);
         }
-        if corrected.len() <= STEPS || flight.len() <= STEPS || most <= least {
+        if corrected.len() <= STEPS || identified.len() <= STEPS || most <= least {
             return None;
         }
         Some(Self {
@@ -81,7 +81,7 @@ impl PhaseSketch {
             least,
             most,
             corrected,
-            flight,
+            identified,
         })
     }
 
@@ -136,12 +136,12 @@ impl PhaseSketch {
     /// Paints both curves over the shaded gap between them.
     fn paint_curves(&self, ui: &Ui, palette: &Palette) {
         let corrected = self.path(&self.corrected);
-        let flight = self.path(&self.flight);
+        let identified = self.path(&self.identified);
         let shade = palette.identified.gamma_multiply(0.22);
         let mut mesh = Mesh::default();
         for step in 0..=STEPS {
             mesh.colored_vertex(corrected[step], shade);
-            mesh.colored_vertex(flight[step], shade);
+            mesh.colored_vertex(identified[step], shade);
             if step > 0 {
                 let corner = 2 * step as u32;
                 mesh.add_triangle(corner - 2, corner - 1, corner);
@@ -151,7 +151,7 @@ impl PhaseSketch {
         let mut shapes = vec![Shape::mesh(mesh)];
         palette
             .role_style(Role::IdentifiedRepresentative, false)
-            .add_shapes(flight, &mut shapes);
+            .add_shapes(identified, &mut shapes);
         palette
             .role_style(Role::Corrected, false)
             .add_shapes(corrected, &mut shapes);
@@ -161,7 +161,7 @@ impl PhaseSketch {
     fn paint_names(&self, ui: &Ui, palette: &Palette) {
         let middle = STEPS / 2;
         ui.painter().text(
-            self.point(middle, self.flight[middle]) + vec2(10.0, 0.0),
+            self.point(middle, self.identified[middle]) + vec2(10.0, 0.0),
             Align2::LEFT_BOTTOM,
             "flight",
             small(),

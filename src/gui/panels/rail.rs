@@ -55,16 +55,16 @@ pub fn rail_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec
             Some(shown) => state.open_suggestions(shown).len(),
             None => 0,
         };
-        let physics = BundleButton {
+        let physics = ListButton {
             name: "Models",
-            kept: state.kept_words(BundleKind::Physics),
+            counts: state.kept_words(BundleKind::Physics),
             suggested,
             sheet: Sheet::Models,
         };
         physics.ui(ui, palette, commands);
-        let identified = BundleButton {
+        let identified = ListButton {
             name: "Identified",
-            kept: state.kept_words(BundleKind::Identified),
+            counts: state.kept_words(BundleKind::Identified),
             suggested: 0,
             sheet: Sheet::Identified,
         };
@@ -73,11 +73,11 @@ pub fn rail_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec
 }
 
 /// Returns the button that opens the displayed condition's records.
-fn records_button(state: &State) -> BundleButton {
+fn records_button(state: &State) -> ListButton {
     let counts = state.condition_fit(state.condition().id()).counts;
-    BundleButton {
+    ListButton {
         name: "Records",
-        kept: format!("{} + {}", counts.fitted, counts.held_out),
+        counts: format!("{} + {}", counts.fitted, counts.held_out),
         suggested: 0,
         sheet: Sheet::Records,
     }
@@ -106,16 +106,16 @@ fn pin_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
 }
 
 /// Button in the rail that opens a list in a sheet.
-struct BundleButton {
+struct ListButton {
     name: &'static str,
     /// Kept and total model count, "16 of 19"; for records, fitted and held-out count, "8 + 1".
-    kept: String,
+    counts: String,
     /// Number of models suggested as outliers and not rejected.
     suggested: usize,
     sheet: Sheet,
 }
 
-impl BundleButton {
+impl ListButton {
     fn ui(self, ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
         let height = if self.suggested > 0 { 58.0 } else { 42.0 };
         let (rect, response) =
@@ -127,7 +127,7 @@ impl BundleButton {
         let second = first.translate(vec2(0.0, 17.0));
         let third = first.translate(vec2(0.0, 34.0));
         painted_text(ui, first, 0.0, self.name, medium(BODY_SIZE), palette.text);
-        painted_text(ui, second, 0.0, &self.kept, small(), palette.dim_text);
+        painted_text(ui, second, 0.0, &self.counts, small(), palette.dim_text);
         if self.suggested > 0 {
             let words = format!("{} suggested", self.suggested);
             painted_text(ui, third, 0.0, &words, small(), palette.warning);
@@ -138,8 +138,8 @@ impl BundleButton {
             format!("Open the list: {}", self.name),
         )
         .on_hover_text(match self.sheet {
-            Sheet::Records => format!("{}: {} (used + held out)", self.name, self.kept),
-            _ => format!("{}: {} kept", self.name, self.kept),
+            Sheet::Records => format!("{}: {} (used + held out)", self.name, self.counts),
+            _ => format!("{}: {} kept", self.name, self.counts),
         })
         .asks(LayoutCommand::ShowSheet(Some(self.sheet)), commands);
     }

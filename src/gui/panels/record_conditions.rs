@@ -25,25 +25,36 @@ use crate::gui::widgets::window_regions::{Region, region_ui};
 /// Positions in a row \[pt from its left edge\].
 struct Columns {
     number_end: f32,
-    /// Centre of the flight-state mark; `None` in the rail.
-    mark_center: Option<f32>,
+    /// Centre of the flight-state symbol; `None` in the rail.
+    symbol_center: Option<f32>,
     airspeed_end: f32,
-    /// Right edge of the record counts; `None` in the rail.
-    records_end: Option<f32>,
-    /// Right edge of χ²/dof for fitted records; `None` in the rail.
-    cost_end: Option<f32>,
+    /// Right edges of the columns that the rail omits; `None` in the rail.
+    list_only: Option<ListColumns>,
     held_out_end: f32,
     /// Left edge of the fit state.
     status_left: f32,
     height: f32,
 }
 
+/// Columns of the full list.
+#[derive(Clone, Copy)]
+struct ListColumns {
+    /// Right edge of the record counts.
+    records_end: f32,
+    /// Right edge of χ²/dof for the fitted records.
+    cost_end: f32,
+}
+
+const LIST_ONLY: ListColumns = ListColumns {
+    records_end: 112.0,
+    cost_end: 152.0,
+};
+
 const LIST: Columns = Columns {
     number_end: 20.0,
-    mark_center: Some(33.0),
+    symbol_center: Some(33.0),
     airspeed_end: 68.0,
-    records_end: Some(112.0),
-    cost_end: Some(152.0),
+    list_only: Some(LIST_ONLY),
     held_out_end: 190.0,
     status_left: 200.0,
     height: ROW_HEIGHT,
@@ -51,10 +62,9 @@ const LIST: Columns = Columns {
 
 const RAIL: Columns = Columns {
     number_end: 17.0,
-    mark_center: None,
+    symbol_center: None,
     airspeed_end: 48.0,
-    records_end: None,
-    cost_end: None,
+    list_only: None,
     held_out_end: 77.0,
     status_left: 81.0,
     height: 24.0,
@@ -75,12 +85,11 @@ pub fn record_conditions_ui(
             kind: TableKind::Conditions,
         };
         heading.ui(ui, palette, commands);
-        // 112 and 152 are `LIST.records_end` and `LIST.cost_end`.
         let heads = [
             (LIST.number_end, "no."),
             (LIST.airspeed_end, "kt"),
-            (112.0, "rec."),
-            (152.0, "χ²/dof"),
+            (LIST_ONLY.records_end, "rec."),
+            (LIST_ONLY.cost_end, "χ²/dof"),
             (LIST.held_out_end, "held"),
         ];
         let row = heads_ui(ui, &heads, palette);
@@ -146,7 +155,7 @@ fn rows_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    let marks = ConditionRows::list(state, ui.available_width());
+    let usual_rows = ConditionRows::list(state, ui.available_width());
     for condition in state.dataset().conditions() {
         let row = RecordsRow {
             state,
@@ -154,7 +163,7 @@ fn rows_ui(
             fit: state.condition_fit(condition.id()),
             columns,
         };
-        row.ui(ui, &marks, palette, commands);
+        row.ui(ui, &usual_rows, palette, commands);
     }
 }
 
@@ -166,11 +175,11 @@ struct RecordsRow<'a> {
 }
 
 impl RecordsRow<'_> {
-    /// Draws the row; `map` paints the flight-state mark as in the usual list.
+    /// Draws the row; `usual_rows` paint the flight-state symbol as in the usual list.
     fn ui(
         &self,
         ui: &mut Ui,
-        map: &ConditionRows<'_>,
+        usual_rows: &ConditionRows<'_>,
         palette: &Palette,
         commands: &mut Vec<Command>,
     ) {
@@ -200,9 +209,9 @@ impl RecordsRow<'_> {
         );
         let airspeed = flight_state.airspeed_kt.to_string();
         self.paint_cell(ui, row, columns.airspeed_end, &airspeed, palette.text);
-        if let Some(center) = columns.mark_center {
+        if let Some(center) = columns.symbol_center {
             let at = pos2(row.left() + center, row.center().y);
-            map.paint_mark(ui, at, flight_state, palette);
+            usual_rows.paint_symbol(ui, at, flight_state, palette);
         }
         self.paint_fit(ui, row, palette);
         self.paint_status(ui, row, palette);
@@ -217,46 +226,48 @@ impl RecordsRow<'_> {
         painted_text(ui, upto, AT_RIGHT_END, words, body(), color);
     }
 
-    /// Paints record counts and costs; costs are dim unless the fit is finished and up to date.
+    /// Paints record counts and costs, in the rail only χ²/dof for the held-out records.
     fn paint_fit(&self, ui: &Ui, row: Rect, palette: &Palette) {
-        let columns = self.columns;
-        let counts = self.fit.counts;
-        if let Some(end) = columns.records_end {
-            let words = match (counts.fitted, counts.held_out) {
-                (0, 0) => "–".to_owned(),
+        let costs = self.fit.costs;
+        if let Some(ListColumns {
+            records_end,
+            cost_end,
+        }) = self.columns.list_only
+        {
+            let counts = match (self.fit.counts.fitted, self.fit.counts.held_out) {
+                (0, 0) => NO_VALUE.to_owned(),
                 (fitted, 0) => fitted.to_string(),
                 (fitted, held_out) => format!("{fitted} + {held_out}"),
             };
-            self.paint_cell(ui, row, end, &words, palette.dim_text);
-        }
-        let is_current = matches!(self.fit.status, FitStatus::Finished { .. });
-        let color = |is_bad: bool| {
-            if !is_current {
-                palette.quiet_text
-            } else if is_bad {
-                palette.warning
-            } else {
-                palette.text
-            }
-        };
-        let none = "–".to_owned();
-        let costs = self.fit.costs;
-        if let Some(end) = columns.cost_end {
-            let words = costs.map_or(none.clone(), |costs| format!("{:.2}", costs.fitted));
-            let is_bad = costs.is_some_and(|costs| costs.fitted > BAD_FIT);
-            self.paint_cell(ui, row, end, &words, color(is_bad));
+            self.paint_cell(ui, row, records_end, &counts, palette.dim_text);
+            let fitted = costs.map(|costs| costs.fitted);
+            let is_bad = fitted.is_some_and(|cost| cost > BAD_FIT);
+            let color = self.cost_color(is_bad, palette);
+            self.paint_cell(ui, row, cost_end, &cost_text(fitted), color);
         }
         let held_out = costs.and_then(|costs| costs.held_out);
-        let words = held_out.map_or(none, |cost| format!("{cost:.2}"));
         let is_bad = costs.is_some_and(|costs| costs.is_held_out_bad);
-        self.paint_cell(ui, row, columns.held_out_end, &words, color(is_bad));
+        let color = self.cost_color(is_bad, palette);
+        let end = self.columns.held_out_end;
+        self.paint_cell(ui, row, end, &cost_text(held_out), color);
+    }
+
+    /// Returns the colour of a cost: dim unless the fit is finished and up to date.
+    fn cost_color(&self, is_bad: bool, palette: &Palette) -> Color32 {
+        if !matches!(self.fit.status, FitStatus::Finished { .. }) {
+            palette.quiet_text
+        } else if is_bad {
+            palette.warning
+        } else {
+            palette.text
+        }
     }
 
     /// Paints the fit state: progress, "queued", "failed", "outdated", or for a finished fit ✓ and,
     /// with cautions, ⚠ and their count; in the rail, a single short mark.
     fn paint_status(&self, ui: &Ui, row: Rect, palette: &Palette) {
         let left = self.columns.status_left;
-        let is_rail = self.columns.records_end.is_none();
+        let is_rail = self.columns.list_only.is_none();
         let center = pos2(row.left() + left + 6.0, row.center().y);
         match self.fit.status {
             FitStatus::None => {}
@@ -299,6 +310,17 @@ impl RecordsRow<'_> {
                 }
             }
         }
+    }
+}
+
+/// Text for a missing count or cost.
+const NO_VALUE: &str = "–";
+
+/// Formats a cost with two decimals.
+fn cost_text(cost: Option<f64>) -> String {
+    match cost {
+        Some(cost) => format!("{cost:.2}"),
+        None => NO_VALUE.to_owned(),
     }
 }
 

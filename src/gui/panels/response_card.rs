@@ -21,20 +21,19 @@ pub const CARD_HEIGHT: f32 = 104.0;
 /// Row height \[pt\].
 const ROW: f32 = 18.0;
 
-/// Row in the card: a quantity, its required or initial value, the remaining value, and the error
-/// bar.
+/// Row in the card: a quantity before and after the correction, and its error bar.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CardRow {
     pub name: &'static str,
-    /// Required gain or delay with its unit, or J before the correction.
-    pub wants: String,
-    /// Gain error, delay error or J that remains after the correction.
-    pub left: String,
+    /// Gain or delay that would match the response, with its unit, or J before the correction.
+    pub before: String,
+    /// Gain, delay or J that remains after the correction.
+    pub after: String,
     /// Error bar's half-width with its unit; empty without an error bar, as for J.
-    pub half: String,
-    /// Whether the correction has hardly reduced the value: a delay of which more than 0.5 ms and
-    /// at least 99 % remain, a part of J as in `is_not_reduced`; always false for the gain.
-    pub is_missed: bool,
+    pub half_width: String,
+    /// Whether the correction has hardly reduced the value (`is_delay_not_reduced`,
+    /// `is_not_reduced`); always false for the gain.
+    pub is_not_reduced: bool,
 }
 
 /// Returns the rows for a response: gain, delay, and both parts of J.
@@ -47,23 +46,24 @@ pub fn card_rows(state: &State, shown: &ConditionAnalysis, pair: Pair) -> Vec<Ca
             .map(|half| format!("{} %", decimals(100.0 * half, 1)));
         rows.push(CardRow {
             name: "gain G",
-            wants: decimals(gain, 3),
-            left: decimals(gain / shown.correction.net_gain(pair), 3),
-            half: half.unwrap_or_default(),
-            is_missed: false,
+            before: decimals(gain, 3),
+            after: decimals(gain / shown.correction.net_gain(pair), 3),
+            half_width: half.unwrap_or_default(),
+            is_not_reduced: false,
         });
     }
     if let Some(delay_s) = shown.wanted_delay_s(pair) {
-        let left_ms = s_to_ms(delay_s - shown.correction.net_delay_s(pair));
+        let before_ms = s_to_ms(delay_s);
+        let after_ms = s_to_ms(delay_s - shown.correction.net_delay_s(pair));
         let half = value_uncertainty
             .half_width(shown.wanted_delay(pair))
             .map(|half_s| milliseconds(s_to_ms(half_s)));
         rows.push(CardRow {
             name: "delay D",
-            wants: milliseconds(s_to_ms(delay_s)),
-            left: milliseconds(left_ms),
-            half: half.unwrap_or_default(),
-            is_missed: left_ms.abs() > 0.5 && left_ms.abs() >= 0.99 * s_to_ms(delay_s).abs(),
+            before: milliseconds(before_ms),
+            after: milliseconds(after_ms),
+            half_width: half.unwrap_or_default(),
+            is_not_reduced: is_delay_not_reduced(before_ms, after_ms),
         });
     }
     if let Some(change) = shown.cost[pair] {
@@ -78,10 +78,10 @@ pub fn card_rows(state: &State, shown: &ConditionAnalysis, pair: Pair) -> Vec<Ca
 fn cost_row(name: &'static str, before: f64, after: f64) -> CardRow {
     CardRow {
         name,
-        wants: decimals(before, 1),
-        left: decimals(after, 1),
-        half: String::new(),
-        is_missed: is_not_reduced(before, after),
+        before: decimals(before, 1),
+        after: decimals(after, 1),
+        half_width: String::new(),
+        is_not_reduced: is_not_reduced(before, after),
     }
 }
 
@@ -90,7 +90,14 @@ fn milliseconds(value: f64) -> String {
     format!("{} ms", decimals(value, 1))
 }
 
-/// Returns whether a part of J remains above 1 and has decreased by less than 0.1.
+/// Returns whether at least 99 % of a delay \[ms\] remain after the correction; false for a
+/// remainder up to 0.5 ms, half a unit of the last digit in the matrix.
+fn is_delay_not_reduced(before_ms: f64, after_ms: f64) -> bool {
+    after_ms.abs() > 0.5 && after_ms.abs() >= 0.99 * before_ms.abs()
+}
+
+/// Returns whether a part of J has decreased by less than 0.1, the last displayed digit; false for
+/// a remainder up to 1: a total J of 50 is already next to indistinguishable.
 pub(super) fn is_not_reduced(before: f64, after: f64) -> bool {
     after > 1.0 && after > before - 0.1
 }
@@ -129,19 +136,19 @@ pub fn card_ui(ui: &mut Ui, state: &State, palette: &Palette) {
     for (place, row) in card_rows(state, shown, pair).iter().enumerate() {
         let line = card_line(inner, place + 1);
         painted_text(ui, line, 0.0, row.name, body(), palette.dim_text);
-        painted_text(ui, line, ends[0], &row.wants, body(), palette.text);
-        let color = if row.is_missed {
+        painted_text(ui, line, ends[0], &row.before, body(), palette.text);
+        let color = if row.is_not_reduced {
             palette.warning
         } else {
             palette.text
         };
-        painted_text(ui, line, ends[1], &row.left, body(), color);
+        painted_text(ui, line, ends[1], &row.after, body(), color);
         let half_color = if state.older_uncertainty().is_some() {
             palette.dim_text.gamma_multiply(OLDER)
         } else {
             palette.dim_text
         };
-        painted_text(ui, line, ends[2], &row.half, body(), half_color);
+        painted_text(ui, line, ends[2], &row.half_width, body(), half_color);
     }
 }
 
@@ -166,14 +173,14 @@ pub fn card_grid_ui(ui: &mut Ui, state: &State, pair: Pair, palette: &Palette) {
             ui.end_row();
             for row in card_rows(state, shown, pair) {
                 ui.label(palette.dim(row.name));
-                ui.label(row.wants);
-                let left = RichText::new(row.left);
-                ui.label(if row.is_missed {
-                    left.color(palette.warning)
+                ui.label(row.before);
+                let after = RichText::new(row.after);
+                ui.label(if row.is_not_reduced {
+                    after.color(palette.warning)
                 } else {
-                    left
+                    after
                 });
-                ui.label(palette.dim(row.half));
+                ui.label(palette.dim(row.half_width));
                 ui.end_row();
             }
         });

@@ -1,12 +1,14 @@
 //! Correction in the displayed condition: gains and delays, with inputs and outputs side by side.
 //!
-//! k and τ are the gain and the delay of a channel. After a change of settings, earlier values
-//! ("was") take the place of the error bars. The proof shows that the gains are the global optimum.
+//! k and τ are the gain and the delay of a channel. While the settings are open, a value that has
+//! changed since shows its earlier value ("was") instead of the error bar. The proof shows that the
+//! gains are the global optimum.
 
 use egui::{Color32, CursorIcon, FontId, Rect, Role, Sense, Ui, pos2, vec2};
 
 use gdcm_method::correction::{Channel, Outcome};
 use gdcm_method::uncertainty::Scalar;
+use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::number_format::decimals;
 use gdcm_model::units::s_to_ms;
 use gdcm_study::ConditionAnalysis;
@@ -37,6 +39,9 @@ const DELAY_END: f32 = 0.85;
 /// Minimum gap between a channel name and its gain, and between the error bar of a gain and the
 /// delay beside it \[pt\].
 const LEAST_GAP: f32 = 5.0;
+/// Length by which an earlier delay may extend beyond its side, into the gap between inputs and
+/// outputs or the panel's padding \[pt\].
+const BEYOND_ROW: f32 = 5.0;
 /// Gap between a value and its error bar, or its earlier value \[pt\].
 const BESIDE_GAP: f32 = 3.0;
 
@@ -84,15 +89,15 @@ pub fn result_ui(
         Sense::hover(),
     );
     let width = 0.5 * (area.width() - 12.0);
-    let inputs = Side {
-        is_input_side: true,
+    let inputs = SideValues {
+        side: ChannelSide::Input,
         place: Rect::from_min_size(area.min, vec2(width, area.height())),
         state,
         shown,
         palette,
     };
-    let outputs = Side {
-        is_input_side: false,
+    let outputs = SideValues {
+        side: ChannelSide::Output,
         place: Rect::from_min_size(
             pos2(area.right() - width, area.top()),
             vec2(width, area.height()),
@@ -146,8 +151,8 @@ fn proof_ui(
 
 /// Channels on one side: inputs on the left, or outputs on the right.
 #[derive(Clone, Copy)]
-struct Side<'a> {
-    is_input_side: bool,
+struct SideValues<'a> {
+    side: ChannelSide,
     place: Rect,
     state: &'a State,
     shown: &'a ConditionAnalysis,
@@ -172,9 +177,9 @@ struct ChannelValue {
     font: FontId,
     color: Color32,
     /// Error bar's half-width, such as "±12": for a gain relative \[%\], for a delay \[ms\].
-    half: Option<String>,
+    half_width: Option<String>,
     /// Value when the settings were opened, if its text has changed since.
-    was: Option<String>,
+    earlier: Option<String>,
     /// Accessible name.
     name: String,
     /// Unrounded value, for the tooltip.
@@ -196,13 +201,13 @@ impl ColumnWidths {
         self.value = self
             .value
             .max(text_width(ui, &value.text, value.font.clone()));
-        if let Some(was) = &value.was {
-            self.earlier = self.earlier.max(text_width(ui, was, small()));
+        if let Some(earlier) = &value.earlier {
+            self.earlier = self.earlier.max(text_width(ui, earlier, small()));
         }
     }
 }
 
-impl Side<'_> {
+impl SideValues<'_> {
     fn row(&self, number: usize) -> Rect {
         Rect::from_min_size(
             self.place.min + vec2(0.0, ROW * number as f32),
@@ -213,13 +218,10 @@ impl Side<'_> {
     fn ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let dataset = self.state.dataset();
         let palette = self.palette;
-        let (title, channels) = if self.is_input_side {
-            ("input", dataset.inputs())
-        } else {
-            ("output", dataset.outputs())
-        };
+        let channels = self.side.pick(dataset.inputs(), dataset.outputs());
         let head = self.row(0);
-        painted_text(ui, head, 0.0, title, small(), palette.dim_text);
+        let title = self.side.to_string();
+        painted_text(ui, head, 0.0, &title, small(), palette.dim_text);
         let columns = self.columns(ui);
         let gain_unit = if columns.gain_changed { "was" } else { "±%" };
         let delay_unit = match (columns.delay_changed, columns.shows_earlier_delays) {
@@ -247,10 +249,9 @@ impl Side<'_> {
     }
 
     fn channel(&self, index: usize) -> Channel {
-        if self.is_input_side {
-            Channel::Input(index)
-        } else {
-            Channel::Output(index)
+        match self.side {
+            ChannelSide::Input => Channel::Input(index),
+            ChannelSide::Output => Channel::Output(index),
         }
     }
 
@@ -259,11 +260,7 @@ impl Side<'_> {
     /// towards the channel names.
     fn columns(&self, ui: &Ui) -> Columns {
         let dataset = self.state.dataset();
-        let channels = if self.is_input_side {
-            dataset.inputs()
-        } else {
-            dataset.outputs()
-        };
+        let channels = self.side.pick(dataset.inputs(), dataset.outputs());
         let mut names = 0.0_f32;
         let mut gains = ColumnWidths::default();
         let mut delays = ColumnWidths::default();
@@ -287,12 +284,12 @@ impl Side<'_> {
             delay_end,
             gain_changed: gains.earlier > 0.0,
             delay_changed: delays.earlier > 0.0,
-            shows_earlier_delays: delay_end + BESIDE_GAP + delays.earlier <= width + LEAST_GAP,
+            shows_earlier_delays: delay_end + BESIDE_GAP + delays.earlier <= width + BEYOND_ROW,
         }
     }
 
     /// Returns a value's text when the settings were opened, unless it equals `text`.
-    fn was(
+    fn earlier_text(
         &self,
         text: &str,
         index: usize,
@@ -312,11 +309,11 @@ impl Side<'_> {
         let scalar = Scalar::ChannelGain(channel);
         let text = gain_text_of(self.shown, channel);
         ChannelValue {
-            was: self.was(&text, index, gain_text_of),
+            earlier: self.earlier_text(&text, index, gain_text_of),
             text,
             font: medium(BODY_SIZE),
             color: self.palette.text,
-            half: self
+            half_width: self
                 .state
                 .painted_uncertainty()
                 .half_width(scalar)
@@ -333,7 +330,7 @@ impl Side<'_> {
         let delay_ms = delay_ms_of(self.shown, channel);
         let is_delayed = delay_ms != 0.0;
         let scalar = Scalar::ChannelDelay(channel);
-        let half = if is_delayed {
+        let half_s = if is_delayed {
             self.state.painted_uncertainty().half_width(scalar)
         } else {
             None
@@ -346,7 +343,7 @@ impl Side<'_> {
             exact.push_str(&format!("\nlead: {}", servo_words(filter)));
         }
         ChannelValue {
-            was: self.was(&text, index, delay_text_of),
+            earlier: self.earlier_text(&text, index, delay_text_of),
             text,
             font: body(),
             color: if is_delayed {
@@ -354,7 +351,7 @@ impl Side<'_> {
             } else {
                 self.palette.quiet_text
             },
-            half: half.map(|half| format!("±{:.0}", s_to_ms(half))),
+            half_width: half_s.map(|half_s| format!("±{:.0}", s_to_ms(half_s))),
             name: format!("Delay of {name}"),
             exact,
             scalar,
@@ -375,29 +372,29 @@ impl Side<'_> {
     ) -> f32 {
         let ChannelValue {
             text,
-            half,
+            half_width,
             name,
             exact,
-            was,
+            earlier,
             scalar,
             ..
         } = value;
         let place = painted_upto(ui, row, end, &text, value.font, value.color);
         let beside = end + BESIDE_GAP;
         let mut right_end = place.right();
-        if let Some(was) = &was {
-            let width = text_width(ui, was, small());
-            if beside + width <= row.width() + LEAST_GAP {
-                let shown = painted_text(ui, row, beside, was, small(), self.palette.dim_text);
+        if let Some(earlier) = &earlier {
+            let width = text_width(ui, earlier, small());
+            if beside + width <= row.width() + BEYOND_ROW {
+                let shown = painted_text(ui, row, beside, earlier, small(), self.palette.dim_text);
                 right_end = shown.right();
             }
-        } else if let Some(half) = &half {
+        } else if let Some(half_width) = &half_width {
             let color = if self.state.older_uncertainty().is_some() {
                 self.palette.dim_text.gamma_multiply(OLDER)
             } else {
                 self.palette.dim_text
             };
-            right_end = painted_text(ui, row, beside, half, small(), color).right();
+            right_end = painted_text(ui, row, beside, half_width, small(), color).right();
         }
         let area = row
             .with_min_x(place.left() - 4.0)
@@ -407,11 +404,11 @@ impl Side<'_> {
         let response = named(
             response,
             Role::Button,
-            accessible_name(&name, &text, was.as_deref(), half.as_deref()),
+            accessible_name(&name, &text, earlier.as_deref(), half_width.as_deref()),
         );
         let mut hint = exact;
-        if let Some(was) = &was {
-            hint.push_str(&format!("\nwas {was} when the settings were opened"));
+        if let Some(earlier) = &earlier {
+            hint.push_str(&format!("\nwas {earlier} when the settings were opened"));
         }
         if let Some((bar, level)) = self.state.value_uncertainty().error_bar(scalar) {
             hint.push_str(&format!("\n{}", error_bar_words(bar, scalar, level)));
@@ -426,10 +423,15 @@ impl Side<'_> {
 }
 
 /// Returns "Gain of LON: 1.059, previously 1.023", or the same with the error bar's half-width instead.
-fn accessible_name(name: &str, text: &str, was: Option<&str>, half: Option<&str>) -> String {
-    match (was, half) {
-        (Some(was), _) => format!("{name}: {text}, previously {was}"),
-        (None, Some(half)) => format!("{name}: {text} {half}"),
+fn accessible_name(
+    name: &str,
+    text: &str,
+    earlier: Option<&str>,
+    half_width: Option<&str>,
+) -> String {
+    match (earlier, half_width) {
+        (Some(earlier), _) => format!("{name}: {text}, previously {earlier}"),
+        (None, Some(half_width)) => format!("{name}: {text} {half_width}"),
         (None, None) => format!("{name}: {text}"),
     }
 }

@@ -181,8 +181,9 @@ impl LinePart {
 }
 
 /// Returns the count of changed settings that have no part of their own, if there are any, and the
-/// parts "α 1", "0.5–12 rad/s", "delays", "representatives"; a narrow window omits the last part,
-/// unless gains are means over pairs.
+/// parts "α 1", "0.5–12 rad/s", "delays", "representatives". α is the weight of the output gains'
+/// deviation from 1; the last part says from which models the gains follow. A narrow window omits
+/// it, unless gains are means over pairs, which is not the default.
 fn settings_parts(state: &State) -> Vec<LinePart> {
     let settings = &state.study.settings;
     let gains = number(settings.alpha_gain);

@@ -224,8 +224,8 @@ fn recent_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
     for file in state.recent.iter().take(SHOWN) {
         let (row, response) =
             ui.allocate_exact_size(vec2(ui.available_width(), 22.0), Sense::click());
-        let is_meant = !file.missing && (response.hovered() || response.has_focus());
-        if is_meant {
+        let is_pointed = !file.missing && (response.hovered() || response.has_focus());
+        if is_pointed {
             ui.painter().rect_filled(row, 4.0, palette.raised);
         }
         let color = if file.missing {

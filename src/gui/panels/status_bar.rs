@@ -56,8 +56,8 @@ fn computation_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut 
         let elapsed_ms = state.results.elapsed_ms;
         label.on_hover_text(format!("The latest analysis took {elapsed_ms:.1} ms"));
     }
-    let beside = words_beside(state, now);
-    if let Some(words) = &beside {
+    let other_work = other_work_text(state, now);
+    if let Some(words) = &other_work {
         ui.label(palette.small(words));
     }
     let is_reading = state.opening.is_some() || state.records.reading.is_some();
@@ -105,7 +105,7 @@ impl Status {
         if !state.results.is_stale(now) {
             // The text is not green: green would suggest that gains and phases are matched. The dot
             // is green only if no other work is under way.
-            let dot = if words_beside(state, now).is_some() {
+            let dot = if other_work_text(state, now).is_some() {
                 palette.accent
             } else {
                 palette.good
@@ -135,7 +135,7 @@ impl Status {
 /// Describes the work other than the live analysis: first the reading of records, else that
 /// background work was stopped, else the background work, unless it began only recently. `None` if
 /// there is none.
-fn words_beside(state: &State, now: f64) -> Option<String> {
+fn other_work_text(state: &State, now: f64) -> Option<String> {
     let background = &state.results.background;
     if let Some(reading) = &state.records.reading {
         return Some(format!("reading {reading} …"));

@@ -37,7 +37,7 @@ pub fn tour_ui(ctx: &Context, state: &State, palette: &Palette, commands: &mut V
         Stroke::new(2.0, palette.warning),
         StrokeKind::Outside,
     );
-    let (pivot, corner) = beside(place, window);
+    let (pivot, corner) = note_corner(place, window);
     Area::new(id.with("note"))
         .order(Order::Foreground)
         .pivot(pivot)
@@ -138,7 +138,7 @@ fn note_ui(
 
 /// Returns which corner of the note to align, and its position: right of the region, left of it, or
 /// over it if neither side has room.
-fn beside(place: Rect, window: Rect) -> (Align2, egui::Pos2) {
+fn note_corner(place: Rect, window: Rect) -> (Align2, egui::Pos2) {
     const GAP: Vec2 = vec2(12.0, 0.0);
     let room = WIDTH + 40.0;
     if window.right() - place.right() > room {

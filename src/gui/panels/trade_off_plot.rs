@@ -29,7 +29,11 @@ const TICK_ALPHAS: [f64; 5] = [1e-2, 0.1, 1.0, 10.0, 100.0];
 const HELP: &str = "Solid: root mean square of ln k of the outputs, scale at the left. Dashed: mean J of \
     the responses in the objective, scale at the right. Both for the displayed condition";
 
-/// Draws the trade-off into `place`, below the slider rail; while it is missing, the reason.
+/// Draws the trade-off into `place`, below the slider rail:
+///
+/// 1. the caption, and the frame with its ticks along α;
+/// 2. the curves ([`TradeOffPlot`]); while they are missing, the reason;
+/// 3. the accessible name, with the values at the chosen α.
 pub(super) fn trade_off_ui(
     ui: &Ui,
     place: Rect,
@@ -42,37 +46,15 @@ pub(super) fn trade_off_ui(
     if response.contains_pointer() {
         *help = Some(HELP);
     }
+    // Step 1.
     let caption = place.with_max_y(place.top() + CAPTION);
-    let words = "deviation of output k, %";
-    painted_text(ui, caption, 0.0, words, small(), palette.dim_text);
-    painted_text(
-        ui,
-        caption,
-        AT_RIGHT_END,
-        "dashed: J",
-        small(),
-        palette.dim_text,
-    );
+    paint_caption(ui, caption, palette);
     let frame = Rect::from_min_max(
         pos2(rail.left(), caption.bottom()),
         pos2(rail.right(), place.bottom() - TICKS),
     );
-    ui.painter().rect_filled(frame, 0.0, palette.background);
-    ui.painter().hline(
-        frame.x_range(),
-        frame.bottom(),
-        Stroke::new(1.0, palette.line),
-    );
-    for alpha in TICK_ALPHAS {
-        let x = slider_place(rail, alpha);
-        ui.painter()
-            .vline(x, frame.y_range(), Stroke::new(1.0, palette.grid));
-        let at = pos2(x, frame.bottom() + 0.5 * TICKS);
-        let font = FontId::proportional(SMALL_SIZE);
-        let text = format!("{alpha}");
-        ui.painter()
-            .text(at, Align2::CENTER_CENTER, text, font, palette.dim_text);
-    }
+    paint_frame(ui, frame, rail, palette);
+    // Step 2.
     let Some(trade_off) = state.trade_off() else {
         let words = match state.shown() {
             Some(_) => state.results.absence(),
@@ -100,6 +82,7 @@ pub(super) fn trade_off_ui(
         palette,
     };
     plot.paint(ui, state);
+    // Step 3.
     let alpha = state.study.settings.alpha_gain;
     let name = match point_at(trade_off, alpha) {
         Some(point) => format!(
@@ -112,6 +95,40 @@ pub(super) fn trade_off_ui(
     named(response, egui::Role::Label, name);
 }
 
+/// Paints which line belongs to which scale.
+fn paint_caption(ui: &Ui, caption: Rect, palette: &Palette) {
+    let words = "deviation of output k, %";
+    painted_text(ui, caption, 0.0, words, small(), palette.dim_text);
+    painted_text(
+        ui,
+        caption,
+        AT_RIGHT_END,
+        "dashed: J",
+        small(),
+        palette.dim_text,
+    );
+}
+
+/// Paints the frame's ground and lower edge, and the ticks along α.
+fn paint_frame(ui: &Ui, frame: Rect, rail: Rect, palette: &Palette) {
+    ui.painter().rect_filled(frame, 0.0, palette.background);
+    ui.painter().hline(
+        frame.x_range(),
+        frame.bottom(),
+        Stroke::new(1.0, palette.line),
+    );
+    for alpha in TICK_ALPHAS {
+        let x = slider_place(rail, alpha);
+        ui.painter()
+            .vline(x, frame.y_range(), Stroke::new(1.0, palette.grid));
+        let at = pos2(x, frame.bottom() + 0.5 * TICKS);
+        let font = FontId::proportional(SMALL_SIZE);
+        let text = format!("{alpha}");
+        ui.painter()
+            .text(at, Align2::CENTER_CENTER, text, font, palette.dim_text);
+    }
+}
+
 /// Trade-off with its area on the screen.
 struct TradeOffPlot<'a> {
     frame: Rect,
@@ -121,6 +138,9 @@ struct TradeOffPlot<'a> {
 }
 
 impl TradeOffPlot<'_> {
+    /// Paints J dashed and the deviation solid, each with the maximum of its scale; vertical lines
+    /// at the α from when the settings were opened and at the chosen α, with a dot on the deviation
+    /// there.
     fn paint(&self, ui: &Ui, state: &State) {
         let palette = self.palette;
         let painter = ui.painter().with_clip_rect(self.frame.expand(3.0));

@@ -11,9 +11,9 @@ use gdcm_model::number_format::compact;
 /// Right edges of the trim columns \[pt from the row's left edge\].
 pub(super) const TRIM_ENDS: [f32; 3] = [70.0, 114.0, 154.0];
 
-/// Trim coordinates that have a column each.
+/// Trim coordinates that have a column each, and their headings.
 pub(super) struct TrimColumns {
-    keys: Vec<String>,
+    coordinates: Vec<String>,
     pub(super) heads: Vec<String>,
 }
 
@@ -21,19 +21,22 @@ impl TrimColumns {
     /// Creates the columns; `None` if a model has no trim, if there are no coordinates, or if there
     /// are more coordinates than columns.
     pub(super) fn new(models: &[Model]) -> Option<Self> {
-        let mut keys: Vec<String> = Vec::new();
+        let mut coordinates: Vec<String> = Vec::new();
         for model in models {
-            for key in model.perturbation()?.keys() {
-                if !keys.contains(key) {
-                    keys.push(key.clone());
+            for coordinate in model.perturbation()?.keys() {
+                if !coordinates.contains(coordinate) {
+                    coordinates.push(coordinate.clone());
                 }
             }
         }
-        if keys.is_empty() || keys.len() > TRIM_ENDS.len() {
+        if coordinates.is_empty() || coordinates.len() > TRIM_ENDS.len() {
             return None;
         }
-        let heads = keys.iter().map(|key| trim_head(key)).collect();
-        Some(Self { keys, heads })
+        let heads = coordinates
+            .iter()
+            .map(|coordinate| trim_head(coordinate))
+            .collect();
+        Some(Self { coordinates, heads })
     }
 
     /// Returns a model's offsets, "·" for zero; `None` if all are zero or the model has no trim.
@@ -43,8 +46,8 @@ impl TrimColumns {
             return None;
         }
         let mut offsets = Vec::new();
-        for key in &self.keys {
-            offsets.push(match trim.get(key) {
+        for coordinate in &self.coordinates {
+            offsets.push(match trim.get(coordinate) {
                 Some(offset) if *offset != 0.0 => signed_compact(*offset),
                 _ => "·".to_owned(),
             });
@@ -54,8 +57,8 @@ impl TrimColumns {
 }
 
 /// Returns a short heading: "V kt" for "airspeed_kt".
-fn trim_head(key: &str) -> String {
-    match key {
+fn trim_head(coordinate: &str) -> String {
+    match coordinate {
         "airspeed_kt" => "V kt".to_owned(),
         "rate_of_climb_fpm" => "climb".to_owned(),
         "roll_deg" => "roll °".to_owned(),

@@ -16,22 +16,26 @@ use crate::gui::state::window_state::State;
 use crate::gui::views::used_couplings;
 use crate::message::Message;
 
+/// Maximum lead price that needs no caution \[dB\]: it is too small for the caution, which gives
+/// whole decibels.
+const LEAST_PRICE_DB: f64 = 0.05;
+
 /// Returns the most important caution, by the first rule that applies:
 ///
 /// 1. couplings are requested but not applied, or make poles unstable within the band;
 /// 2. physics parameters are requested but not applied;
-/// 3. the leads amplify a constrained response above the band by more than 0.05 dB;
+/// 3. the leads amplify a constrained response above the band by more than [`LEAST_PRICE_DB`];
 /// 4. there are other cautions about the couplings;
 /// 5. the schedule costs more than the condition's own correction.
 pub(super) fn caution(state: &State, shown: &ConditionAnalysis) -> Option<Message> {
-    // Step 1.
+    // Rule 1.
     let couplings = coupling_caution(state);
     if let Some(caution) = &couplings
         && caution.kind == RemarkKind::Trouble
     {
         return Some(caution.message.clone());
     }
-    // Step 2.
+    // Rule 2.
     if state
         .analysis()
         .is_some_and(|analysis| analysis.asked_physics().is_err())
@@ -39,7 +43,7 @@ pub(super) fn caution(state: &State, shown: &ConditionAnalysis) -> Option<Messag
         let text = "Physics parameters not applied";
         return Some(Message::new("no-physics", text));
     }
-    // Steps 3 to 5.
+    // Rules 3 to 5.
     lead_caution(shown)
         .or(couplings.map(|caution| caution.message))
         .or_else(|| schedule_caution(state, shown))
@@ -92,7 +96,7 @@ pub(super) fn unstable_in_band(state: &State) -> usize {
 }
 
 /// Returns the lead price: the maximum gain that a constrained response's filters add at ten times
-/// the band's upper end (M15.6); `None` without leads, and up to 0.05 dB.
+/// the band's upper end (M15.6); `None` without leads, and up to [`LEAST_PRICE_DB`].
 fn lead_caution(shown: &ConditionAnalysis) -> Option<Message> {
     let price = LeadPrice::new(&shown.compensated.as_ref()?.leads)?;
     let most_db = shown
@@ -100,7 +104,7 @@ fn lead_caution(shown: &ConditionAnalysis) -> Option<Message> {
         .marked()
         .map(|pair| price.of_pair_db(pair))
         .fold(0.0, f64::max);
-    if most_db <= 0.05 {
+    if most_db <= LEAST_PRICE_DB {
         return None;
     }
     let top = six_digits(price.limit_rad_s);

@@ -45,7 +45,8 @@ pub(super) struct ShownVerdict {
     pub(super) is_older: bool,
     /// Whether the spinner in the heading turns.
     pub(super) spins: bool,
-    /// Whether the first step is the window's primary button; not while the view in front has one.
+    /// Whether the recommended step is the window's primary button, in the accent colour; not while
+    /// the view in front has a primary button.
     pub(super) is_primary: bool,
 }
 
@@ -151,18 +152,21 @@ impl VerdictPlaces {
             pos2(area.right() - PAD_RIGHT, area.bottom()),
         );
         let space = (area.height() - HEADS - 2.0 * row - STEPS) / 3.0;
-        let line =
-            |top: f32, height: f32| Rect::from_x_y_ranges(inner.x_range(), top..=top + height);
-        let heads = line(area.top() + 0.75 * space, HEADS);
-        let first = line(heads.bottom(), row);
-        let second = line(first.bottom(), row);
-        let steps = line(second.bottom() + space, STEPS);
+        let heads = line_within(inner, area.top() + 0.75 * space, HEADS);
+        let first = line_within(inner, heads.bottom(), row);
+        let second = line_within(inner, first.bottom(), row);
+        let steps = line_within(inner, second.bottom() + space, STEPS);
         Self {
             heads,
             rows: [first, second],
             steps,
         }
     }
+}
+
+/// Returns a line across `inner` with this upper edge and height \[pt\].
+fn line_within(inner: Rect, top: f32, height: f32) -> Rect {
+    Rect::from_x_y_ranges(inner.x_range(), top..=top + height)
 }
 
 /// Left edge of the count in a verdict row \[pt from the row's left edge\].
@@ -218,26 +222,26 @@ fn row_ui(ui: &Ui, rect: Rect, row: &VerdictRow, is_all_met: bool, palette: &Pal
     painted_text(ui, rect, WORDS_LEFT, &words, body(), palette.text);
 }
 
-/// Line with the steps, from left to right: the primary step, its alternatives, the caution or the
-/// note, and at the right end the link to the reasons.
+/// Line with the steps, from left to right: the recommended step, its alternatives, the caution or
+/// the note, and at the right end the link to the reasons.
 struct StepsLine<'a> {
-    primary: Option<&'a Step>,
+    recommended: Option<&'a Step>,
     alternatives: Vec<&'a Step>,
     caution: Option<&'a str>,
     note: &'a str,
     /// Step that opens the reasons; if the verdict has none, a link with the number of notes.
     reasons: Option<Step>,
-    /// Whether the first step is the window's primary button.
+    /// Whether the recommended step is the window's primary button.
     is_primary: bool,
 }
 
 impl<'a> StepsLine<'a> {
-    /// Sorts the verdict's steps: the first is primary, unless it exports or shows the reasons; the
-    /// step that shows the reasons has its own place, and without one there is a link with the
+    /// Sorts the verdict's steps: the first is recommended, unless it exports or shows the reasons;
+    /// the step that shows the reasons has its own place, and without one there is a link with the
     /// number of notes, if there are any; the others are alternatives.
     fn new(verdict: &'a Verdict, is_primary: bool) -> Self {
         // Skip the export step: the primary button at the foot of the panel already exports.
-        let primary = verdict
+        let recommended = verdict
             .steps
             .first()
             .filter(|step| step.command != export() && !shows_reasons(step));
@@ -259,7 +263,7 @@ impl<'a> StepsLine<'a> {
             ));
         }
         Self {
-            primary,
+            recommended,
             alternatives,
             caution: verdict.caution_text(),
             note: &verdict.note,
@@ -271,8 +275,8 @@ impl<'a> StepsLine<'a> {
     /// Draws the line:
     ///
     /// 1. reserve the right end for the link to the reasons;
-    /// 2. draw the primary step at the left, then the alternatives that leave room for the caution
-    ///    in its short form;
+    /// 2. draw the recommended step at the left, then the alternatives that leave room for the
+    ///    caution in its short form;
     /// 3. draw the caution, or without one the note, in the rest;
     /// 4. draw the link to the reasons.
     fn ui(&self, ui: &mut Ui, line: Rect, palette: &Palette, commands: &mut Vec<Command>) {
@@ -285,10 +289,10 @@ impl<'a> StepsLine<'a> {
             right = reasons_place.left() - GAP;
         }
         // Step 2.
-        if let Some(step) = self.primary {
+        if let Some(step) = self.recommended {
             let width = text_width(ui, &step.label, medium(BODY_SIZE)) + 24.0;
             let place = Rect::from_min_size(pos2(left, line.top()), vec2(width, STEPS));
-            self.primary_ui(ui, place, step, palette, commands);
+            self.recommended_ui(ui, place, step, palette, commands);
             left = place.right() + GAP;
         }
         // An alternative that leaves no room for the caution is omitted: the reasons sheet and the
@@ -314,14 +318,14 @@ impl<'a> StepsLine<'a> {
             note_ui(ui, rest, self.note, palette);
         }
         // Step 4.
-        // Drawn last, so that the keyboard reaches the primary step first.
+        // Drawn last, so that the keyboard reaches the recommended step first.
         if let Some(step) = &self.reasons {
             link_ui(ui, reasons_place, step, palette, commands);
         }
     }
 
     /// Draws the recommended step, filled with the accent if it is the primary button.
-    fn primary_ui(
+    fn recommended_ui(
         &self,
         ui: &mut Ui,
         place: Rect,
@@ -356,7 +360,8 @@ fn short_caution(caution: &str) -> String {
 /// Draws the first text that fits: "⚠ Leads: +21 dB above 12 rad/s"; "⚠ +21 dB above 12 rad/s";
 /// "⚠ +21 dB"; else the last with its middle elided.
 fn caution_ui(ui: &Ui, place: Rect, caution: &str, palette: &Palette) {
-    let subject = ui.max_rect();
+    // The tooltip stays beside the whole panel.
+    let panel = ui.max_rect();
     let whole = format!("⚠ {caution}");
     let short = short_caution(caution);
     // A number must not lose its middle: the range is omitted as a whole.
@@ -375,20 +380,21 @@ fn caution_ui(ui: &Ui, place: Rect, caution: &str, palette: &Palette) {
     let id = ui.scope_id().with("caution");
     let response = named(ui.interact(place, id, Sense::hover()), Role::Label, caution);
     if !shown.ends_with(caution) {
-        hint_left_of(response, subject, caution);
+        hint_left_of(response, panel, caution);
     }
 }
 
 /// Draws a note such as "of 19 models, as a first step"; in a narrow panel, only "of 19 models".
 fn note_ui(ui: &Ui, place: Rect, note: &str, palette: &Palette) {
-    let subject = ui.max_rect();
+    // The tooltip stays beside the whole panel.
+    let panel = ui.max_rect();
     let words = leading_parts(ui, note, place.width(), SMALL_SIZE);
     let shown = elided(ui, words, place.width(), SMALL_SIZE);
     painted_text(ui, place, 0.0, &shown, small(), palette.dim_text);
     let id = ui.scope_id().with("note");
     let response = named(ui.interact(place, id, Sense::hover()), Role::Label, note);
     if shown != note {
-        hint_left_of(response, subject, note);
+        hint_left_of(response, panel, note);
     }
 }
 

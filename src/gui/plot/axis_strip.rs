@@ -61,7 +61,7 @@ impl AxisStrip<'_> {
         self.pan_and_zoom(&response, view);
         if response.double_clicked() || response.secondary_clicked() {
             let texts = self.axis.texts(scene, view.axis_mut(self.axis).range());
-            view.limits = Some(LimitsForm::new(self.axis, pane, texts));
+            view.limits_form = Some(LimitsForm::new(self.axis, pane, texts));
         }
         self.limits_ui(ui, &response, view);
     }
@@ -97,7 +97,10 @@ impl AxisStrip<'_> {
             palette,
             ..
         } = self.pane;
-        let Some(mut form) = view.limits.take_if(|form| form.is_for(self.axis, pane)) else {
+        let Some(mut form) = view
+            .limits_form
+            .take_if(|form| form.is_for(self.axis, pane))
+        else {
             return;
         };
         // The form is taken out of the view while it is drawn, and put back if it stays open.
@@ -116,7 +119,7 @@ impl AxisStrip<'_> {
         match answer {
             FormAnswer::Waiting => {}
             FormAnswer::Fit => {
-                view.fit_axis(self.axis);
+                view.request_axis_fit(self.axis);
                 is_open = false;
             }
             FormAnswer::Show => match self.axis.range(scene, form.texts()) {
@@ -133,7 +136,7 @@ impl AxisStrip<'_> {
             },
         }
         if is_open {
-            view.limits = Some(form);
+            view.limits_form = Some(form);
         }
     }
 }

@@ -38,7 +38,7 @@ const LEAST_SIZE: Vec2 = vec2(140.0, 130.0);
 /// 1. nothing if the space is too small; only the message if no curve has a point to draw;
 /// 2. leave out the hidden curves;
 /// 3. move the axes: request a fit if the curves' frequency range has changed, carry out requested
-///    fits, and let the value axes follow new curves;
+///    fits, and let the value axes follow new curves as far as the [`AxisUpdate`] permits;
 /// 4. draw chips, panes and headings (`BodePlot::ui`), with the events on them.
 pub fn bode_ui(
     ui: &mut Ui,
@@ -72,17 +72,10 @@ pub fn bode_ui(
     // Step 3.
     // While a band end is dragged, the view must not move under the pointer.
     if scene.omega_range.is_none() && !ui.input(|input| input.pointer.any_down()) {
-        view.follow_curves(scene.curves);
+        view.follow_frequencies(scene.curves);
     }
     view.fit_if_requested(&visible);
-    let update = if scene.stale {
-        AxisUpdate::Pending
-    } else if ui.input(|input| input.pointer.any_down()) {
-        AxisUpdate::Dragging
-    } else {
-        AxisUpdate::Complete
-    };
-    view.follow_values(scene, &visible, update);
+    view.follow_values(scene, &visible, axis_update(ui, scene));
     // Step 4.
     let builder = UiBuilder::new().id_salt(scene.quantity.salt());
     ui.scope_builder(builder.max_rect(rect), |ui| {
@@ -96,6 +89,18 @@ pub fn bode_ui(
     });
     ui.advance_cursor_after_rect(rect);
     events
+}
+
+/// Returns how far the value axes may follow new curves: not while the curves are older than the
+/// settings, and only by growing while something is dragged.
+fn axis_update(ui: &Ui, scene: &BodeScene<'_>) -> AxisUpdate {
+    if scene.stale {
+        AxisUpdate::Pending
+    } else if ui.input(|input| input.pointer.any_down()) {
+        AxisUpdate::Dragging
+    } else {
+        AxisUpdate::Complete
+    }
 }
 
 /// Plot in which at least one curve has data.
@@ -165,8 +170,8 @@ fn plot_chips<'a>(scene: &BodeScene<'a>, view: &BodeView, palette: &Palette) -> 
     Chips {
         plot: scene.quantity.label_suffix(),
         roles,
-        bands: scene.shows_bands,
-        states: scene.chips,
+        shows_uncertainty: scene.shows_uncertainty,
+        restrictions: scene.restrictions,
         is_tight: false,
     }
 }

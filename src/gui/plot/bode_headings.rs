@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! heading       quantity [unit]        J before → after   leads +19.4 dB   matched
-//! pane                                                         names beside the curve ends
+//! pane                                                         names beside the ends of curves
 //! between       values at the cursor
 //! below         frequency unit at the right; coherence strip
 //! ```
@@ -33,7 +33,7 @@ use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium};
 const GAP: f32 = 12.0;
 
 /// Roles whose curves are named in the right margin.
-const NAMED: [Role; 5] = [
+const NAMED_ROLES: [Role; 5] = [
     Role::IdentifiedRepresentative,
     Role::Corrected,
     Role::WithoutLeads,
@@ -64,8 +64,9 @@ impl BodeHeadings<'_> {
                 let words = scene.message.unwrap_or("updating…");
                 row_text(ui, line, AT_RIGHT, words, SMALL_SIZE, self.palette.dim_text);
             }
-            let has_margin_names =
-                scene.names_curves || !scene.rules.is_empty() || !scene.end_names.is_empty();
+            let has_margin_names = scene.names_roles
+                || !scene.reference_lines.is_empty()
+                || !scene.group_names.is_empty();
             if let Some(transform) = self.view.transform(pane)
                 && has_margin_names
             {
@@ -125,62 +126,67 @@ impl BodeHeadings<'_> {
         row_text(ui, rest, AT_RIGHT, &cost, BODY_SIZE, palette.dim_text);
     }
 
-    /// Returns the labels in the right margin: if the scene names curves, those in the [`NAMED`]
-    /// roles, each at the visible end of the first such curve; names that label several curves;
-    /// names for the reference lines; and beside the magnitudes the price of the leads.
+    /// Returns the labels in the right margin: names of roles, of groups of curves and of reference
+    /// lines, and beside the magnitudes the price of the leads.
     fn pane_labels(&self, pane: Pane, transform: &PlotTransform) -> Vec<EndLabel> {
-        let Self {
-            scene,
-            view,
-            palette,
-        } = *self;
-        let frame = *transform.frame();
         let mut labels = Vec::new();
-        if scene.names_curves {
-            let last_omega = view.omega_range().1;
-            for role in NAMED {
-                let Some(end) = curve_end(scene, role, pane, last_omega) else {
-                    continue;
-                };
-                let at = transform.position_from_point(&end);
-                let color = palette.role_style(role, false).color.to_opaque();
-                labels.push(EndLabel {
-                    y: height_beside(frame, at.y),
-                    text: role.name().to_owned(),
-                    color: palette.label_color(color),
-                });
-            }
+        if self.scene.names_roles {
+            labels.extend(self.role_labels(pane, transform));
         }
-        labels.extend(self.end_name_labels(pane, transform));
+        labels.extend(self.group_labels(pane, transform));
         let lines = PaneLines {
-            lines: scene.rules,
+            lines: self.scene.reference_lines,
             pane,
             transform,
         };
-        labels.extend(lines.labels(palette));
-        if pane == Pane::Magnitude
-            && let Some(invalid) = scene.invalid
-            && let Some([with, without]) = invalid.ends_db
-            && let Some(text) = scene.price_words()
-        {
-            let middle = PlotPoint::new(0.0, 0.5 * (with + without));
-            let at = transform.position_from_point(&middle);
+        labels.extend(lines.labels(self.palette));
+        if pane == Pane::Magnitude {
+            labels.extend(self.price_label(transform));
+        }
+        labels
+    }
+
+    /// Returns the names of the [`NAMED_ROLES`], each at the visible end of the first curve in the
+    /// role.
+    fn role_labels(&self, pane: Pane, transform: &PlotTransform) -> Vec<EndLabel> {
+        let frame = *transform.frame();
+        let last_omega = self.view.omega_range().1;
+        let mut labels = Vec::new();
+        for role in NAMED_ROLES {
+            let Some(end) = curve_end(self.scene, role, pane, last_omega) else {
+                continue;
+            };
+            let at = transform.position_from_point(&end);
+            let color = self.palette.role_style(role, false).color.to_opaque();
             labels.push(EndLabel {
                 y: height_beside(frame, at.y),
-                text,
-                color: palette.warning,
+                text: role.name().to_owned(),
+                color: self.palette.label_color(color),
             });
         }
         labels
     }
 
-    /// Returns the names that label several curves, each at the mean height of their ends; as many
+    /// Returns the price of the leads, halfway between the magnitudes with and without them; `None`
+    /// without leads.
+    fn price_label(&self, transform: &PlotTransform) -> Option<EndLabel> {
+        let [with_db, without_db] = self.scene.invalid?.ends_db?;
+        let middle = PlotPoint::new(0.0, 0.5 * (with_db + without_db));
+        let at = transform.position_from_point(&middle);
+        Some(EndLabel {
+            y: height_beside(*transform.frame(), at.y),
+            text: self.scene.price_words()?,
+            color: self.palette.warning,
+        })
+    }
+
+    /// Returns the names of groups of curves, each at the mean height of the curves' ends; as many
     /// as fit into the pane.
-    fn end_name_labels(&self, pane: Pane, transform: &PlotTransform) -> Vec<EndLabel> {
+    fn group_labels(&self, pane: Pane, transform: &PlotTransform) -> Vec<EndLabel> {
         let frame = *transform.frame();
         let last_omega = self.view.omega_range().1;
         let mut labels = Vec::new();
-        for name in self.scene.end_names {
+        for name in self.scene.group_names {
             let end_values = self.scene.curves.iter().filter_map(|curve| {
                 if !name.curves.contains(&curve.id) {
                     return None;
@@ -205,10 +211,10 @@ impl BodeHeadings<'_> {
 }
 
 /// Returns the magnitude added by the leads as text for the heading above the magnitudes; `None`
-/// above the phases, without leads, or if the right margin names the curves and the price
+/// above the phases, without leads, or if the right margin names the roles and the price
 /// (`pane_labels`).
 fn price_in_heading(scene: &BodeScene<'_>, pane: Pane) -> Option<String> {
-    if pane != Pane::Magnitude || scene.names_curves {
+    if pane != Pane::Magnitude || scene.names_roles {
         return None;
     }
     Some(format!("leads {}", scene.price_words()?))

@@ -20,10 +20,10 @@ const HEADING: f32 = 20.0;
 const GAP: f32 = 6.0;
 /// Margin at the right for the frequency unit \[pt\].
 const UNIT_MARGIN: f32 = 36.0;
-/// Margin at the right for curve names \[pt\].
-const CURVE_NAME_MARGIN: f32 = 78.0;
-/// Margin at the right for names that label several curves \[pt\].
-const END_NAME_MARGIN: f32 = 76.0;
+/// Margin at the right for the names of roles \[pt\].
+const ROLE_NAME_MARGIN: f32 = 78.0;
+/// Margin at the right for names of groups of curves \[pt\].
+const GROUP_NAME_MARGIN: f32 = 76.0;
 /// Margin at the right for names on reference lines \[pt\].
 const LINE_NAME_MARGIN: f32 = 118.0;
 /// Minimum plot height with room for the values between the panes \[pt\].
@@ -103,15 +103,15 @@ fn line_above(pane: Rect) -> Rect {
     Rect::from_min_max(pos2(pane.left(), pane.top() - HEADING), pane.right_top())
 }
 
-/// Returns the right margin \[pt\]: for names on reference lines; else for names that label several
-/// curves; else for curve names; else only for the frequency unit.
+/// Returns the right margin \[pt\]: for names on reference lines; else for names of groups of
+/// curves; else for names of roles; else only for the frequency unit.
 fn right_margin(scene: &BodeScene<'_>) -> f32 {
-    if !scene.rules.is_empty() {
+    if !scene.reference_lines.is_empty() {
         LINE_NAME_MARGIN
-    } else if !scene.end_names.is_empty() {
-        END_NAME_MARGIN
-    } else if scene.names_curves {
-        CURVE_NAME_MARGIN
+    } else if !scene.group_names.is_empty() {
+        GROUP_NAME_MARGIN
+    } else if scene.names_roles {
+        ROLE_NAME_MARGIN
     } else {
         UNIT_MARGIN
     }

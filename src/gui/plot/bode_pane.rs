@@ -12,6 +12,7 @@ use gdcm_plot::figure::responses::BodeBand;
 use super::axis_strip::axis_strips_ui;
 use super::bode_keys::handle_keys;
 use super::bode_layout::VALUE_AXIS_WIDTH;
+use super::bode_scene::BodeScene;
 use super::bode_view::{BodeView, SelectionBox};
 use super::cached_raster::RasterImage;
 use super::curve_layer::{STALE, add_curve_lines, lies_at_the_bottom};
@@ -32,16 +33,16 @@ use crate::gui::widgets::palette::Palette;
 const TOLERANCE: f64 = 0.1;
 /// Minimum number of labels on a value axis, where they fit.
 const LEAST_LABELS: usize = 5;
-/// Height of the strips that mark frequency ranges along the lower edge \[pt\].
-const STRIP_HEIGHT: f32 = 5.0;
+/// Height of the marks along the lower edge, at the noticed ranges \[pt\].
+const NOTICED_HEIGHT: f32 = 5.0;
 /// Opacity of the comparison band's shade in the dark theme.
-const SHADE_DARK: f32 = 0.055;
+const COMPARISON_SHADE_DARK: f32 = 0.055;
 /// Opacity of the comparison band's shade in the light theme.
-const SHADE_LIGHT: f32 = 0.075;
+const COMPARISON_SHADE_LIGHT: f32 = 0.075;
 /// Opacity of the veil outside the comparison band.
 const VEIL: f32 = 0.4;
-/// Opacity of uncertainty bands and of the other areas between two curves.
-const BAND_FILL: f32 = 0.22;
+/// Opacity of an area between two curves, such as an uncertainty band.
+const AREA_FILL: f32 = 0.22;
 /// Opacity of the lines at marked frequencies.
 const MARKED: f32 = 0.7;
 /// Opacity of the line at the frequency under the pointer.
@@ -51,8 +52,8 @@ const POINTED: f32 = 0.55;
 ///
 /// 1. draw the panel with its layers ([`PaneScene::add_layers`]);
 /// 2. handle dragging, wheel, keys, and gestures on the axes; they take effect in the next frame;
-/// 3. paint over the frame: reference lines, marked frequency ranges, and above the magnitudes the
-///    strip where the corrected model is not valid.
+/// 3. paint over the frame: reference lines, the ranges at which a pilot would notice the error,
+///    and above the magnitudes the strip where the corrected model is not valid.
 pub(super) fn pane_ui(ui: &mut Ui, pane: PaneScene<'_>, view: &mut BodeView) -> Response {
     let scene = pane.scene;
     let name = scene.quantity.name(pane.pane);
@@ -95,12 +96,12 @@ pub(super) fn pane_ui(ui: &mut Ui, pane: PaneScene<'_>, view: &mut BodeView) -> 
     axis_strips_ui(ui, pane, view);
     // Step 3.
     let lines = PaneLines {
-        lines: scene.rules,
+        lines: scene.reference_lines,
         pane: pane.pane,
         transform: &shown.transform,
     };
     lines.paint(ui, pane.palette);
-    paint_strips(ui, scene.strips, &shown.transform, pane.palette);
+    paint_noticed_ranges(ui, scene, &shown.transform, pane.palette);
     if let (Pane::Magnitude, Some(invalid)) = (pane.pane, scene.invalid) {
         let strip = InvalidStrip {
             band_end: scene.band.1,
@@ -144,15 +145,21 @@ fn zoom_by_scrolling(pane: Pane, response: &Response, view: &mut BodeView) {
     }
 }
 
-/// Draws frequency ranges \[rad/s\] as strips along the lower edge.
-fn paint_strips(ui: &Ui, ranges: &[(f64, f64)], transform: &PlotTransform, palette: &Palette) {
+/// Marks the frequency ranges at which a pilot would notice the remaining error, along the lower
+/// edge.
+fn paint_noticed_ranges(
+    ui: &Ui,
+    scene: &BodeScene<'_>,
+    transform: &PlotTransform,
+    palette: &Palette,
+) {
     let frame = *transform.frame();
     let painter = ui.painter().with_clip_rect(frame);
-    for (from, to) in ranges {
+    let top = frame.bottom() - NOTICED_HEIGHT;
+    for (from, to) in scene.noticed_ranges {
         let [left, right] = [from, to].map(|omega| transform.position_from_point_x(omega.log10()));
-        let strip =
-            Rect::from_x_y_ranges(left..=right, frame.bottom() - STRIP_HEIGHT..=frame.bottom());
-        painter.rect_filled(strip.shrink2(vec2(0.0, 1.0)), 0.0, palette.warning);
+        let mark = Rect::from_x_y_ranges(left..=right, top..=frame.bottom());
+        painter.rect_filled(mark.shrink2(vec2(0.0, 1.0)), 0.0, palette.warning);
     }
 }
 
@@ -160,8 +167,8 @@ impl<'a> PaneScene<'a> {
     /// Adds the layers to a panel with these `bounds`, from bottom to top:
     ///
     /// 1. shade over the comparison band, and hatching where the corrected model is not valid;
-    /// 2. areas: uncertainty bands unless switched off, remaining phase error, range of the
-    ///    conditions' optima;
+    /// 2. areas between two curves: uncertainty bands unless switched off, remaining phase error,
+    ///    range of the conditions' optima;
     /// 3. curves, if many partly as an image;
     /// 4. veil outside the comparison band;
     /// 5. lines at the marked frequencies, at those of the bandwidth, and at the cursor.
@@ -169,27 +176,27 @@ impl<'a> PaneScene<'a> {
         let scene = self.scene;
         plot.set_plot_bounds(bounds);
         // Step 1.
-        self.shade_band(plot);
+        self.shade_comparison_band(plot);
         if scene.invalid.is_some() {
             add_hatching(plot, scene.band.1, self.palette);
         }
-        // Step 2; the curves are thinned first.
-        // The panel's own transform still has the bounds of the last frame.
+        // Step 2 draws only what `bounds` show; the panel's own transform still has the bounds of
+        // the last frame.
         let transform = PlotTransform::new(*plot.transform().frame(), bounds, false);
         let visible = VisiblePart::new(&transform, plot.ctx().pixels_per_point(), TOLERANCE);
         drawn
             .curves
             .update(scene.curves, self.pane, visible, self.palette);
-        if scene.shows_bands != Some(false) {
-            for band in scene.bands {
-                self.add_band(plot, band, &bounds, self.palette.identified);
+        if scene.shows_uncertainty != Some(false) {
+            for uncertainty in scene.uncertainty_bands {
+                self.add_area_between(plot, uncertainty, &bounds, self.palette.identified);
             }
         }
-        if let Some(missing) = scene.missing {
-            self.add_band(plot, missing, &bounds, self.palette.identified);
+        if let Some(remaining) = scene.remaining_phase {
+            self.add_area_between(plot, remaining, &bounds, self.palette.identified);
         }
-        if let Some(optima) = scene.optima {
-            self.add_band(plot, optima, &bounds, self.palette.corrected);
+        if let Some(optima) = scene.optima_range {
+            self.add_area_between(plot, optima, &bounds, self.palette.corrected);
         }
         // Step 3.
         let image = drawn.image_of_many(
@@ -205,18 +212,18 @@ impl<'a> PaneScene<'a> {
         self.add_cursors(plot);
     }
 
-    fn shade_band(self, plot: &mut PlotUi<'_>) {
+    fn shade_comparison_band(self, plot: &mut PlotUi<'_>) {
         let strength = if self.palette.is_dark {
-            SHADE_DARK
+            COMPARISON_SHADE_DARK
         } else {
-            SHADE_LIGHT
+            COMPARISON_SHADE_LIGHT
         };
         let (min, max) = self.scene.band;
         let fill = self.palette.accent.gamma_multiply(strength);
         add_shade(plot, min.log10()..=max.log10(), fill);
     }
 
-    /// Dims the frequencies outside the band, which do not count in the comparison.
+    /// Dims the frequencies outside the comparison band, which do not count.
     fn veil_outside(self, plot: &mut PlotUi<'_>) {
         let veil = self.palette.background.gamma_multiply(VEIL);
         let (min, max) = self.scene.band;
@@ -224,18 +231,24 @@ impl<'a> PaneScene<'a> {
         add_shade(plot, max.log10()..=f64::INFINITY, veil);
     }
 
-    /// Draws a band's visible part in segments; non-finite values and jumps in a wrapped phase
-    /// leave a gap.
-    fn add_band(self, plot: &mut PlotUi<'_>, band: &BodeBand, view: &PlotBounds, color: Color32) {
+    /// Fills the visible part of the area between two curves, in segments; non-finite values, as at
+    /// the jumps of a wrapped phase, leave a gap.
+    fn add_area_between(
+        self,
+        plot: &mut PlotUi<'_>,
+        area: &BodeBand,
+        view: &PlotBounds,
+        color: Color32,
+    ) {
         let values = match self.pane {
-            Pane::Magnitude => &band.magnitude_db,
-            Pane::Phase => &band.phase_deg,
+            Pane::Magnitude => &area.magnitude_db,
+            Pane::Phase => &area.phase_deg,
         };
         let mut points = Vec::with_capacity(values.len());
-        for (omega, [lower, upper]) in band.omega.iter().zip(values) {
+        for (omega, [lower, upper]) in area.omega.iter().zip(values) {
             points.push([omega.log10(), *lower, *upper]);
         }
-        let fill = color.gamma_multiply(BAND_FILL);
+        let fill = color.gamma_multiply(AREA_FILL);
         for run in points.chunk_by(|from, to| is_in_view(from, to, view)) {
             if run.len() > 1 {
                 add_area(plot, run, fill);
@@ -280,7 +293,7 @@ impl<'a> PaneScene<'a> {
     }
 }
 
-/// Returns whether any part of the band between two points `[log10 omega, lower, upper]` is
+/// Returns whether any part of the area between two points `[log10 omega, lower, upper]` is
 /// visible; false if a value is not finite.
 fn is_in_view(from: &[f64; 3], to: &[f64; 3], view: &PlotBounds) -> bool {
     let [min_x, min_y] = view.min();

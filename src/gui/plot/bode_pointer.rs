@@ -59,7 +59,7 @@ fn curve_at(
 ) -> Option<Hit> {
     let hit = nearest_curve(scene.curves, pane, pointer, transform)?;
     let lines = PaneLines {
-        lines: scene.rules,
+        lines: scene.reference_lines,
         pane,
         transform,
     };

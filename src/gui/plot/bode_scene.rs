@@ -13,7 +13,7 @@ use gdcm_plot::figure::axis::FrequencyUnit;
 use gdcm_plot::figure::bode::CoherenceCurve;
 pub use gdcm_plot::figure::responses::{BodeBand, ReferenceLine};
 
-use super::chips::Chip;
+use super::chips::Restriction;
 use super::curve_style::Role;
 use super::drawn_curves::{BodeCurve, CurveId};
 use super::quantity::BodeQuantity;
@@ -27,18 +27,19 @@ pub struct BodeScene<'a> {
     pub pair_title: &'a str,
     /// Curves, in any order.
     pub curves: &'a [BodeCurve],
-    /// Labelled reference lines across the panes.
-    pub rules: &'a [ReferenceLine],
+    /// Labelled lines across the panes, such as bounds and envelopes.
+    pub reference_lines: &'a [ReferenceLine],
     /// Curve with which the others are compared; clicking it does not reject or restore its model.
     pub reference: Option<&'a CurveId>,
-    pub bands: &'a [BodeBand],
+    /// Confidence intervals of the identified responses over frequency.
+    pub uncertainty_bands: &'a [BodeBand],
     /// Measured coherence, in a strip below the panes.
     pub coherence: &'a [CoherenceCurve],
     /// Minimum coherence at which a frequency counts.
     pub least_coherence: f64,
-    /// Frequency ranges marked along the lower edge of each pane \[rad/s\]: a pilot would notice
-    /// the remaining error there.
-    pub strips: &'a [(f64, f64)],
+    /// Frequency ranges at which a pilot would notice the remaining error \[rad/s\], marked along
+    /// the lower edge of each pane.
+    pub noticed_ranges: &'a [(f64, f64)],
     /// Frequency range after fitting \[rad/s\]; the curves' range if `None`.
     pub omega_range: Option<(f64, f64)>,
     /// Cursor set by another plot \[rad/s\].
@@ -53,27 +54,28 @@ pub struct BodeScene<'a> {
     pub notes: [Option<&'a PaneNote>; 2],
     /// Remaining phase error: the area between the corrected and the identified curve, within the
     /// band; nothing in the magnitude pane.
-    pub missing: Option<&'a BodeBand>,
+    pub remaining_phase: Option<&'a BodeBand>,
     /// Range between the smallest and the largest error at the conditions' optima, that is, of the
     /// models with their condition's own correction.
-    pub optima: Option<&'a BodeBand>,
-    /// Names in the right margin, each beside the ends of its curves.
-    pub end_names: &'a [EndName],
+    pub optima_range: Option<&'a BodeBand>,
+    /// Names of groups of curves, in the right margin beside the ends of the curves.
+    pub group_names: &'a [GroupName],
     /// Whether the read-out's room stays free, because another part draws it.
     pub reserves_readout: bool,
     /// Frequencies above the band, where the corrected curves are not valid and only show the
     /// magnitude added by the leads; `None` without leads.
     pub invalid: Option<&'a InvalidRegion>,
-    /// Whether uncertainty bands are drawn; `None` if there are none.
-    pub shows_bands: Option<bool>,
+    /// Whether `uncertainty_bands` are drawn; `None` if there are none.
+    pub shows_uncertainty: Option<bool>,
     /// Role drawn above all others.
     pub raised: Option<Role>,
-    /// Whether the curves in the roles of `bode_headings::NAMED` are named in the right margin.
-    pub names_curves: bool,
+    /// Whether the right margin names the roles in `bode_headings::NAMED_ROLES`, beside the ends of
+    /// their curves.
+    pub names_roles: bool,
     /// Roles whose curves are hidden; `None` if there are none.
     pub hidden_roles: Option<&'a BTreeSet<Role>>,
-    /// Chips for the current restrictions.
-    pub chips: &'a [Chip],
+    /// Restrictions on the displayed curves, each with a chip.
+    pub restrictions: &'a [Restriction],
     /// Lower and upper end of the comparison band \[rad/s\].
     pub band: (f64, f64),
     pub unit: FrequencyUnit,
@@ -84,9 +86,9 @@ pub struct BodeScene<'a> {
     pub message: Option<&'a str>,
 }
 
-/// Name shared by several curves, in the right margin.
+/// Name of a group of curves, in the right margin.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct EndName {
+pub struct GroupName {
     /// Name, such as "140 kt × 2".
     pub text: String,
     /// Role in whose colour the name is written.

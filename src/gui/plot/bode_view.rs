@@ -53,12 +53,12 @@ pub struct BodeView {
     /// Finished selection box.
     pub(super) selection: Option<SelectionBox>,
     /// Open form for axis limits.
-    pub(super) limits: Option<LimitsForm>,
+    pub(super) limits_form: Option<LimitsForm>,
     must_fit_frequencies: bool,
     must_fit_values: bool,
-    /// Range of the curves' `log10 omega` when the view last followed them.
-    followed: Option<Range>,
-    /// Fitted values for all curves, including hidden ones, when the axes last followed them.
+    /// Range of the curves' `log10 omega` when the frequency axis last followed them.
+    followed_log_omega: Option<Range>,
+    /// Fitted values for all curves, including hidden ones, when the value axes last followed them.
     followed_values: [Option<Range>; 2],
     /// Panes as last drawn.
     pub(super) drawn: [DrawnPane; 2],
@@ -116,10 +116,10 @@ impl Default for BodeView {
             menu_subject: None,
             is_selecting: false,
             selection: None,
-            limits: None,
+            limits_form: None,
             must_fit_frequencies: true,
             must_fit_values: true,
-            followed: None,
+            followed_log_omega: None,
             followed_values: [None; 2],
             drawn: Default::default(),
         }
@@ -153,11 +153,11 @@ impl BodeView {
 
     /// Requests a fit if the curves' frequency range has changed, unless the engineer chose the
     /// visible range. The first range is only remembered: a new view requests its fit itself.
-    pub(super) fn follow_curves(&mut self, curves: &[BodeCurve]) {
+    pub(super) fn follow_frequencies(&mut self, curves: &[BodeCurve]) {
         let ends = log_omega_of(curves);
-        if ends.is_some() && ends != self.followed {
-            let is_first = self.followed.is_none();
-            self.followed = ends;
+        if ends.is_some() && ends != self.followed_log_omega {
+            let is_first = self.followed_log_omega.is_none();
+            self.followed_log_omega = ends;
             let follows = !is_first && !self.log_omega.is_chosen();
             self.must_fit_frequencies |= follows;
             self.must_fit_values |= follows;
@@ -175,7 +175,8 @@ impl BodeView {
     /// 2. remember them as followed; not while something is dragged, because the release may then
     ///    shrink the axis;
     /// 3. the first time, the axis stays: [`Self::fit_if_requested`] has fitted it;
-    /// 4. afterwards, fit the curves in `visible` with hysteresis ([`changed_range`]).
+    /// 4. afterwards, fit the curves in `visible` with hysteresis ([`changed_range`]): the axis
+    ///    changes only if they leave it, or fill little of it.
     pub(super) fn follow_values(
         &mut self,
         whole: &BodeScene<'_>,
@@ -198,13 +199,15 @@ impl BodeView {
             if update == AxisUpdate::Complete {
                 self.followed_values[index] = fitted;
             }
-            // Steps 3 and 4.
-            if let Some(values) = fitted_values(visible.curves, pane, band)
-                && !is_first
-            {
-                let wanted = values.with_margin(FIT_MARGIN, whole.quantity.least_height(pane));
+            // Step 3.
+            if is_first {
+                continue;
+            }
+            // Step 4.
+            if let Some(values) = fitted_values(visible.curves, pane, band) {
+                let fitted = values.with_margin(FIT_MARGIN, whole.quantity.least_height(pane));
                 let shown = self.values[index].range();
-                if let Some(changed) = changed_range(shown, wanted, update) {
+                if let Some(changed) = changed_range(shown, fitted, update) {
                     let scale = whole.quantity.unit(pane).scale();
                     self.values[index].fit(labelled_range(changed, scale));
                 }
@@ -308,7 +311,7 @@ impl BodeView {
 
     /// Requests that an axis be fitted in the next frame, even if the engineer chose its range. For
     /// a value axis, the other pane's values are fitted too, unless they were chosen.
-    pub(super) fn fit_axis(&mut self, axis: BodeAxis) {
+    pub(super) fn request_axis_fit(&mut self, axis: BodeAxis) {
         self.axis_mut(axis).release();
         match axis {
             BodeAxis::Frequency => self.must_fit_frequencies = true,

@@ -1,4 +1,4 @@
-//! Chart content: lines, bands and marks with error bars, over a linear or logarithmic axis.
+//! Chart content: lines, areas and marks with error bars, over a linear or logarithmic axis.
 
 use std::sync::Arc;
 
@@ -62,7 +62,7 @@ impl ChartLine {
 
 /// Area between two lines over the same x values.
 #[derive(Clone, Debug)]
-pub struct ChartBand {
+pub struct ChartArea {
     /// `[x, lower value, upper value]`.
     pub points: Vec<[f64; 3]>,
     pub color: Color32,
@@ -113,15 +113,16 @@ pub struct Chart<'a> {
     /// Highlighted horizontal ranges.
     pub spans: Vec<ChartSpan>,
     /// Areas, below all lines.
-    pub bands: Vec<ChartBand>,
+    pub areas: Vec<ChartArea>,
     /// Lines, the last on top.
     pub lines: Vec<ChartLine>,
     /// Marks, on top of the lines.
     pub marks: Vec<ChartMarks>,
     /// Dotted vertical lines.
     pub verticals: Vec<f64>,
-    /// Ends of a horizontal band, drawn as solid vertical lines in the accent colour.
-    pub band: Option<[f64; 2]>,
+    /// Lower and upper end of the frequency band \[rad/s\], drawn as solid vertical lines in the
+    /// accent colour.
+    pub band_ends: Option<[f64; 2]>,
     /// Dashed horizontal lines.
     pub levels: Vec<f64>,
     /// Values between which the chart is shaded.

@@ -33,18 +33,18 @@ pub(super) fn add_layers(plot: &mut PlotUi<'_>, chart: &Chart<'_>, palette: &Pal
         let [from, to] = span.ends.map(|end| chart.across.place(end));
         add_shade(plot, from..=to, span.color);
     }
-    for band in &chart.bands {
-        let mut points = band.points.clone();
+    for area in &chart.areas {
+        let mut points = area.points.clone();
         for point in &mut points {
             point[0] = chart.across.place(point[0]);
         }
-        add_area(plot, &points, band.color);
+        add_area(plot, &points, area.color);
     }
     for vertical in &chart.verticals {
         let stroke = Stroke::new(0.8, palette.dim_text);
         add_dotted_vertical(plot, chart.across.place(*vertical), stroke);
     }
-    for end in chart.band.into_iter().flatten() {
+    for end in chart.band_ends.into_iter().flatten() {
         let stroke = Stroke::new(1.0, palette.accent);
         add_vertical(plot, chart.across.place(end), stroke);
     }

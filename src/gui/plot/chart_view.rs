@@ -19,10 +19,10 @@ use crate::gui::widgets::palette::Palette;
 
 /// Gap between two notes \[pt\].
 const NOTE_GAP: f32 = 8.0;
-/// Margin at the left and at the right, relative to the width.
-const EDGE: f64 = 0.01;
-/// Margin above and below, relative to the height.
-const VALUE_EDGE: f32 = 0.08;
+/// Margin at the left and at the right of the data, relative to the width.
+const ACROSS_MARGIN: f64 = 0.01;
+/// Margin above and below the data, relative to the height.
+const VALUE_MARGIN: f32 = 0.08;
 /// Minimum distance between tick labels on a linear horizontal axis \[pt\].
 const TICK_GAP: f64 = 50.0;
 
@@ -53,7 +53,7 @@ pub fn chart_ui(ui: &mut Ui, rect: Rect, chart: &Chart<'_>, palette: &Palette) -
         values: vertical_axis(chart),
         gestures: Gestures::Following(Follow {
             pans: Vec2b::new(true, !chart.fits_values),
-            margins: vec2(EDGE as f32, VALUE_EDGE),
+            margins: vec2(ACROSS_MARGIN as f32, VALUE_MARGIN),
             group: chart.group,
             whole_across: chart.whole_across.map(|range| place_of(chart, range)),
             values: chart.values,
@@ -199,7 +199,7 @@ fn zoom_limits(chart: &Chart<'_>) -> [Range; 2] {
     let widths = ZoomLimit::TenWidths { least: 0.0 };
     let limit_across = match chart.across {
         ChartAxis::Frequency(_) => ZoomLimit::Decade,
-        ChartAxis::Linear if ends_with_data => ZoomLimit::DataWithMargin(EDGE),
+        ChartAxis::Linear if ends_with_data => ZoomLimit::DataWithMargin(ACROSS_MARGIN),
         ChartAxis::Linear => widths,
     };
     [

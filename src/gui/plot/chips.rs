@@ -32,7 +32,7 @@ const BAND_SAMPLE_WIDTH: f32 = 7.0;
 pub(super) struct RoleChip {
     pub(super) role: Role,
     pub(super) text: String,
-    pub(super) look: CurveStyle,
+    pub(super) style: CurveStyle,
     /// Whether the role's curves are drawn.
     pub(super) shown: bool,
     /// Whether one of the role's curves is emphasized: selected, or under the pointer here or in
@@ -73,7 +73,7 @@ pub(super) fn role_chips(
         chips.push(RoleChip {
             role,
             text: chip_text(role, &members),
-            look: palette.role_style(first.role, rejected),
+            style: palette.role_style(first.role, rejected),
             shown: !hidden.is_some_and(|hidden| hidden.contains(&role)),
             lit: members.iter().any(|curve| curve.highlighted),
         });
@@ -103,9 +103,9 @@ fn shortened(label: &str) -> String {
     start
 }
 
-/// A restriction that currently applies to a plot, and what a click on it does.
+/// A restriction on the displayed curves, drawn as a chip; a click lifts it.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Chip {
+pub struct Restriction {
     /// Text, such as "Only V+10kt ×".
     pub text: String,
     /// Tooltip that says what a click does.
@@ -118,9 +118,8 @@ pub(super) struct Chips<'a> {
     pub(super) plot: &'a str,
     pub(super) roles: Vec<RoleChip>,
     /// Whether uncertainty bands are drawn; `None` if there are none.
-    pub(super) bands: Option<bool>,
-    /// Restrictions that currently apply to the plot.
-    pub(super) states: &'a [Chip],
+    pub(super) shows_uncertainty: Option<bool>,
+    pub(super) restrictions: &'a [Restriction],
     /// Whether samples and texts are shortened for lack of room.
     pub(super) is_tight: bool,
 }
@@ -145,24 +144,27 @@ impl Chips<'_> {
     /// Returns the chips' total width in a single line \[pt\].
     pub(super) fn width(&self, ui: &Ui) -> f32 {
         let sample = self.sample();
-        let bands = self.bands.map(|_| self.bands_text());
+        let uncertainty = self.shows_uncertainty.map(|_| self.uncertainty_text());
         let names = self.roles.iter().map(|chip| chip.text.as_str());
         let switches = names
-            .chain(bands)
+            .chain(uncertainty)
             .map(|name| chip_width(ui, name) + sample + SAMPLE_GAP);
-        let states = self.states.iter().map(|chip| chip_width(ui, &chip.text));
-        switches.chain(states).sum::<f32>() - GAP
+        let restrictions = self
+            .restrictions
+            .iter()
+            .map(|restriction| chip_width(ui, &restriction.text));
+        switches.chain(restrictions).sum::<f32>() - GAP
     }
 
     /// Draws the chips in a single line, starting at the upper left corner of `area`:
     ///
     /// 1. the switches that fit, each with a sample of its curves;
     /// 2. for the others a chip that counts them, "+2", with a menu;
-    /// 3. the restrictions (`states`), which are always visible.
+    /// 3. the restrictions, which are always visible.
     ///
     /// Without roles and restrictions nothing is drawn, and the height is 0.
     pub(super) fn ui(&self, ui: &mut Ui, area: Rect, palette: &Palette) -> ChipsResponse {
-        if self.roles.is_empty() && self.states.is_empty() {
+        if self.roles.is_empty() && self.restrictions.is_empty() {
             return ChipsResponse {
                 height: 0.0,
                 event: None,
@@ -194,16 +196,16 @@ impl Chips<'_> {
             event = self.rest_ui(ui, &mut row, rest, palette).or(event);
         }
         // Step 3.
-        for (index, chip) in self.states.iter().enumerate() {
+        for (index, restriction) in self.restrictions.iter().enumerate() {
             let face = ChipFace {
-                text: &chip.text,
-                name: &format!("{}{}", chip.text, self.plot),
+                text: &restriction.text,
+                name: &format!("{}{}", restriction.text, self.plot),
                 sample: None,
                 is_lit: false,
             };
             let response = row.chip_ui(ui, &face, palette);
-            if hint_above(response, &chip.hint).clicked() {
-                event = Some(BodeEvent::ChipClicked(index));
+            if hint_above(response, &restriction.hint).clicked() {
+                event = Some(BodeEvent::RestrictionClicked(index));
             }
         }
         ChipsResponse {
@@ -224,10 +226,10 @@ impl Chips<'_> {
                 is_lit: chip.lit,
             });
         }
-        if let Some(is_shown) = self.bands {
+        if let Some(is_shown) = self.shows_uncertainty {
             switches.push(Switch {
-                subject: SwitchSubject::Bands,
-                text: self.bands_text(),
+                subject: SwitchSubject::Uncertainty,
+                text: self.uncertainty_text(),
                 name: format!("Show the 95 % band{}", self.plot),
                 is_shown,
                 is_lit: false,
@@ -240,9 +242,9 @@ impl Chips<'_> {
     /// that counts the others.
     fn fitting_count(&self, ui: &Ui, switches: &[Switch<'_>], width: f32) -> usize {
         let restrictions_width: f32 = self
-            .states
+            .restrictions
             .iter()
-            .map(|chip| chip_width(ui, &chip.text))
+            .map(|restriction| chip_width(ui, &restriction.text))
             .sum();
         // Each chip's width includes the gap behind it, which the last chip does not need.
         let room = width - restrictions_width + GAP;
@@ -297,7 +299,7 @@ impl Chips<'_> {
         shown?.inner
     }
 
-    fn bands_text(&self) -> &'static str {
+    fn uncertainty_text(&self) -> &'static str {
         if self.is_tight { "95 %" } else { "95 % band" }
     }
 
@@ -319,14 +321,14 @@ struct Switch<'a> {
 
 enum SwitchSubject<'a> {
     Role(&'a RoleChip),
-    Bands,
+    Uncertainty,
 }
 
 impl Switch<'_> {
     fn style(&self, palette: &Palette) -> CurveStyle {
         match self.subject {
-            SwitchSubject::Role(chip) => chip.look,
-            SwitchSubject::Bands => CurveStyle {
+            SwitchSubject::Role(chip) => chip.style,
+            SwitchSubject::Uncertainty => CurveStyle {
                 color: palette.identified.gamma_multiply(0.45),
                 width: BAND_SAMPLE_WIDTH,
                 dash: Dash::Solid,
@@ -341,7 +343,9 @@ impl Switch<'_> {
                 let effect = if self.is_shown { "hide" } else { "show" };
                 format!("Click: {effect} · Alt+click: alone · Shift+click: in front")
             }
-            SwitchSubject::Bands => "Confidence interval for each identified response".to_owned(),
+            SwitchSubject::Uncertainty => {
+                "Confidence interval for each identified response".to_owned()
+            }
         }
     }
 
@@ -352,7 +356,7 @@ impl Switch<'_> {
             SwitchSubject::Role(chip) if modifiers.alt => CurveCommand::ShowRoleAlone(chip.role),
             SwitchSubject::Role(chip) if modifiers.shift => CurveCommand::RaiseRole(chip.role),
             SwitchSubject::Role(chip) => CurveCommand::ToggleRole(chip.role),
-            SwitchSubject::Bands => CurveCommand::ShowBands(!self.is_shown),
+            SwitchSubject::Uncertainty => CurveCommand::ShowBands(!self.is_shown),
         })
     }
 }

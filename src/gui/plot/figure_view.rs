@@ -36,14 +36,14 @@ pub struct FigureView {
     /// Subject of the figure; if this changes, all plots are fitted.
     subject: String,
     plots: Vec<PlotView>,
-    /// Ranges kept for the linear axes that are fitted to the marks; see [`Self::hold_axes`].
-    held: BTreeMap<HeldAxis, Range>,
+    /// Ranges shown last on the linear axes that are fitted to the marks; see [`Self::hold_axes`].
+    shown_ranges: BTreeMap<AxisKey, Range>,
     question_menu: QuestionMenu,
 }
 
-/// Axis whose range is kept between frames.
+/// Identity of an axis whose range is kept between frames.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct HeldAxis {
+struct AxisKey {
     /// Plot title; empty for an axis that all plots share.
     plot: String,
     /// Index of the panel in the plot, 0 for a shared axis.
@@ -61,7 +61,7 @@ struct PlotView {
 impl FigureView {
     /// Requests that all plots be fitted in the next frame.
     pub fn request_fit(&mut self) {
-        self.held.clear();
+        self.shown_ranges.clear();
         for plot in &mut self.plots {
             plot.first.ranges = None;
         }
@@ -74,7 +74,7 @@ impl FigureView {
     /// axes and axes with names keep the figure's ranges.
     pub fn hold_axes(&mut self, figure: &mut Figure, update: AxisUpdate) {
         let shared = figure.shared;
-        let mut held = BTreeMap::new();
+        let mut shown_ranges = BTreeMap::new();
         for plot in &mut figure.plots {
             for (number, panel) in plot.panels.iter_mut().enumerate() {
                 for along in [Along::X, Along::Y] {
@@ -89,27 +89,27 @@ impl FigureView {
                     if axis.scale == Scale::Logarithmic || axis.names.is_some() {
                         continue;
                     }
-                    let key = HeldAxis {
-                        plot: if is_shared {
-                            String::new()
-                        } else {
-                            plot.title.clone()
-                        },
-                        panel: if is_shared { 0 } else { number },
+                    let mut key = AxisKey {
+                        plot: String::new(),
+                        panel: 0,
                         is_vertical,
                     };
-                    let range = match self.held.get(&key) {
+                    if !is_shared {
+                        key.plot.clone_from(&plot.title);
+                        key.panel = number;
+                    }
+                    let range = match self.shown_ranges.get(&key) {
                         Some(shown) => steady_range(*shown, fitted, update),
                         None => fitted,
                     };
                     axis.range = Some(range);
-                    held.insert(key, range);
+                    shown_ranges.insert(key, range);
                 }
             }
         }
         // Without plots, results are being computed for the first time or anew: the ranges stay.
         if !figure.plots.is_empty() {
-            self.held = held;
+            self.shown_ranges = shown_ranges;
         }
     }
 

@@ -13,7 +13,7 @@ use super::zoom_limit::{ZoomLimit, zoomed_within};
 
 /// Maximum visible range, relative to the panel's full range.
 const FARTHEST: f64 = 10.0;
-/// Minimum visible range, in axis coordinates.
+/// Minimum visible range, in axis coordinates: far finer than the values of a figure are known.
 const LEAST_WIDTH: f64 = 1e-4;
 
 /// Returns the visible ranges after this frame's gestures: the wheel zooms about the pointer.

@@ -25,6 +25,10 @@ const LEAST_WITH_TEXT: Vec2 = vec2(96.0, 54.0);
 const CELL_HEAD: f32 = 16.0;
 /// Opacity of the line at the frequency under the pointer.
 const POINTED: f32 = 0.55;
+/// Opacity of the comparison band's shade.
+const BAND_SHADE: f32 = 0.06;
+/// Share of the selection colour in the background of a constrained response.
+const CONSTRAINED_TINT: f32 = 0.55;
 
 /// Response at its position in the table.
 pub(super) struct PlacedCell<'a> {
@@ -78,7 +82,7 @@ impl PlacedCell<'_> {
         let palette = self.palette;
         let mut fill = palette.background;
         if self.cell.constrained {
-            fill = fill.lerp_to_gamma(palette.selected, 0.55);
+            fill = fill.lerp_to_gamma(palette.selected, CONSTRAINED_TINT);
         }
         let outline = if self.cell.selected {
             Stroke::new(2.0, palette.accent)
@@ -99,7 +103,7 @@ impl PlacedCell<'_> {
             };
             let painter = ui.painter_at(rect.intersect(ui.clip_rect()));
             self.paint_ground(&painter, rect, AxisRange::of_values(pane, values));
-            let drawn = view.sketches.entry((self.cell.pair, pane)).or_default();
+            let drawn = view.drawn_panes.entry((self.cell.pair, pane)).or_default();
             let sketch = Sketch {
                 curves: self.cell.curves,
                 pane,
@@ -123,7 +127,7 @@ impl PlacedCell<'_> {
         let (min, max) = self.band;
         let ends = self.place_across(rect, min)..=self.place_across(rect, max);
         let band = Rect::from_x_y_ranges(ends, rect.y_range());
-        painter.rect_filled(band, 0.0, self.palette.accent.gamma_multiply(0.06));
+        painter.rect_filled(band, 0.0, self.palette.accent.gamma_multiply(BAND_SHADE));
         values.paint_levels(painter, rect, self.palette);
         self.frequencies
             .paint_verticals(painter, rect, self.palette);

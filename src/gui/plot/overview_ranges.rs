@@ -78,10 +78,10 @@ impl SharedRanges {
                 }
             }
             for (output, values) in rows {
-                let wanted = values.with_margin(MARGIN, LEAST_HEIGHT);
+                let fitted = values.with_margin(MARGIN, LEAST_HEIGHT);
                 let changed = match self.rows.get(&(output, pane)) {
-                    Some(shown) => changed_range(*shown, wanted, update),
-                    None => Some(wanted),
+                    Some(shown) => changed_range(*shown, fitted, update),
+                    None => Some(fitted),
                 };
                 if let Some(changed) = changed {
                     let labelled = labelled_range(changed, value_unit(pane).scale());

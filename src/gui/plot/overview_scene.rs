@@ -67,15 +67,15 @@ pub struct OverviewView {
     pub show_phase: bool,
     /// Visible values of the rows.
     pub(super) ranges: SharedRanges,
-    /// Panes as last drawn.
-    pub(super) sketches: BTreeMap<(Pair, Pane), DrawnPane>,
+    /// Panes of the cells as last drawn, with their cached lines.
+    pub(super) drawn_panes: BTreeMap<(Pair, Pane), DrawnPane>,
     pub(super) menu_curve: Option<MenuCurve>,
 }
 
 impl OverviewView {
     /// Returns a cell's transform as last drawn.
     fn transform(&self, pair: Pair, pane: Pane) -> Option<&PlotTransform> {
-        self.sketches.get(&(pair, pane))?.transform.as_ref()
+        self.drawn_panes.get(&(pair, pane))?.transform.as_ref()
     }
 
     /// Returns the cell's curve under the pointer, if any.

@@ -1,4 +1,5 @@
-//! Hysteresis for axes: a range changes only if the data no longer fit, and then to round ends.
+//! Hysteresis for axes: a range changes only if the data leave it or fill little of it, and then to
+//! round ends.
 //! `figure_view` uses it for the axes of figures, `bode_view` for the values in a Bode plot,
 //! `overview_ranges` for those in the overview.
 
@@ -33,38 +34,38 @@ pub enum AxisUpdate {
     Pending,
 }
 
-/// Returns the range of an axis after an update: `shown` while it fits the data, whose fitted range
-/// is `wanted`; otherwise a range with round ends.
-pub(super) fn steady_range(shown: Range, wanted: Range, update: AxisUpdate) -> Range {
-    match changed_range(shown, wanted, update) {
+/// Returns the range of an axis after an update: `shown` while it suits the data, whose own range
+/// is `fitted`; otherwise a range with round ends.
+pub(super) fn steady_range(shown: Range, fitted: Range, update: AxisUpdate) -> Range {
+    match changed_range(shown, fitted, update) {
         Some(changed) => rounded_out(changed),
         None => shown,
     }
 }
 
-/// Returns the range to which an axis changes, before its ends are rounded; `None` while `shown` fits
-/// the data, whose fitted range is `wanted`. With the union of both ranges as `grown`:
+/// Returns the range to which an axis changes, before its ends are rounded; `None` while `shown`
+/// suits the data, whose own range is `fitted`. With the union of both ranges as `grown`:
 ///
 /// 1. results pending: no change;
 /// 2. dragging: `grown` if the data exceed the axis by more than [`OVERSHOOT`], otherwise no
 ///    change;
-/// 3. results complete: `wanted` if it uses less than [`LEAST_USE`] of `grown` (the axis shrinks,
+/// 3. results complete: `fitted` if it uses less than [`LEAST_USE`] of `grown` (the axis shrinks,
 ///    or the data have moved away); else `grown` if the data exceed the axis; else no change.
-pub(super) fn changed_range(shown: Range, wanted: Range, update: AxisUpdate) -> Option<Range> {
+pub(super) fn changed_range(shown: Range, fitted: Range, update: AxisUpdate) -> Option<Range> {
     // Step 1.
     if update == AxisUpdate::Pending {
         return None;
     }
     let spare = OVERSHOOT * shown.width();
-    let exceeds = wanted.min < shown.min - spare || wanted.max > shown.max + spare;
-    let grown = shown.union(wanted);
+    let exceeds = fitted.min < shown.min - spare || fitted.max > shown.max + spare;
+    let grown = shown.union(fitted);
     // Step 2.
     if update == AxisUpdate::Dragging {
         return if exceeds { Some(grown) } else { None };
     }
     // Step 3.
-    if wanted.width() < LEAST_USE * grown.width() {
-        Some(wanted)
+    if fitted.width() < LEAST_USE * grown.width() {
+        Some(fitted)
     } else if exceeds {
         Some(grown)
     } else {

@@ -1,7 +1,8 @@
 //! Thinning: only visible points are drawn, and no details finer than a pixel.
 //!
-//! [`thinned`] omits the invisible points of a run; the functions here cut the runs out of the
-//! curves, and give it the size of a pixel.
+//! A *run* is a piece of a curve without gaps and in view. [`thinned`] omits the details of a run
+//! that are finer than a pixel; the functions here cut the runs out of the curves, and compute the
+//! size of a pixel in axis coordinates.
 
 use egui_plot::{PlotBounds, PlotTransform};
 
@@ -47,7 +48,7 @@ pub(super) fn runs_in_view(
     let mut run: Vec<[f64; 2]> = Vec::new();
     let mut previous: Option<[f64; 2]> = None;
     for point in points {
-        let point = Some(point).filter(is_finite);
+        let point = if is_finite(&point) { Some(point) } else { None };
         match (previous, point) {
             (Some(from), Some(to)) if touches(from, to, &near) => {
                 if run.is_empty() {

@@ -1,9 +1,13 @@
 //! Ticks and grid lines for egui_plot axes: adapts the ticks chosen by [`ticks_of`], which also
 //! serves printed figures, to egui_plot.
 //!
-//! An egui_plot mark has a value and a step size; the larger the step size, the more strongly it is
-//! drawn. A mark is therefore labelled by giving it a step size of [`LABELLED`] points, and left
-//! without a label by giving it [`MINOR`] points, whatever the true distance.
+//! A *tick* has a value and perhaps a label. egui_plot knows no ticks but *marks*, each with a
+//! value and a step size, from which it decides whether to draw the label and how strongly to draw
+//! the grid line. Therefore the mark of a tick with a label gets a step size of [`LABELLED`]
+//! points, that of a tick without a label [`MINOR`] points, whatever the true distance.
+//!
+//! A *place* is an axis coordinate, in which egui_plot works: `log10` of a frequency, or decibels
+//! for a ratio. The *gap* is the distance between neighbouring labels.
 
 use egui::Rangef;
 use egui_plot::{GridInput, GridMark};
@@ -38,15 +42,17 @@ pub(super) const LABEL_SPACING: Rangef = Rangef {
 const DECADE_LABEL_GAP: f64 = 34.0;
 /// Minimum distance between two grid lines within a decade \[pt\].
 const DECADE_LINE_GAP: f64 = 5.0;
-/// Minimum number of labels with which the scale of an axis can be read.
+/// Minimum number of labels with which the scale of an axis can be read: two values and the
+/// distance between them.
 const USUAL_LEAST_LABELS: usize = 2;
 /// Minimum distance between labels that move together until there are two \[pt\]; letters are 11 pt
 /// high.
-const LEAST_LABEL_GAP: f64 = 13.0;
-/// Minimum distance between labels that move together until there are more than two \[pt\].
-const LOW_LABEL_GAP: f64 = 15.0;
+const LEAST_GAP_OF_TWO: f64 = 13.0;
+/// Minimum distance between labels that move together until there are more than two \[pt\]: a
+/// larger value gives low plots fewer labels, a smaller one crowds them.
+const LEAST_GAP_OF_MORE: f64 = 15.0;
 /// Factor by which labels in a low plot move together until it has enough.
-const CLOSER: f64 = 0.8;
+const GAP_REDUCTION: f64 = 0.8;
 /// Minimum distance between labels at equal steps on a logarithmic axis, relative to other labels:
 /// 2.2 and 2.4 are wider than 2 and 5.
 const EQUAL_STEPS_APART: f64 = 1.5;
@@ -124,12 +130,12 @@ impl Ticks {
         let mut ticks = self.ticks_between(bounds, units_per_point, gap);
         // Step 2.
         let least_gap = if least > USUAL_LEAST_LABELS {
-            LOW_LABEL_GAP
+            LEAST_GAP_OF_MORE
         } else {
-            LEAST_LABEL_GAP
+            LEAST_GAP_OF_TWO
         };
         while count_labels(&ticks) < least && gap > least_gap {
-            gap = (CLOSER * gap).max(least_gap);
+            gap = (GAP_REDUCTION * gap).max(least_gap);
             ticks = self.ticks_between(bounds, units_per_point, gap);
         }
         // Step 3.
@@ -153,6 +159,7 @@ impl Ticks {
         let units_per_point = range.width() / length_pt;
         let mut labels = Vec::new();
         for mark in self.marks((range.min, range.max), units_per_point) {
+            // The step size is either `LABELLED` or `MINOR` points.
             if mark.step_size > 0.5 * (LABELLED + MINOR) * units_per_point {
                 labels.push(TickLabel {
                     place: mark.value,

@@ -110,8 +110,9 @@ pub(super) fn tiles_ui(
         least,
     } = *area;
     let mut tiles = Tiles::arrange(count, rect.size(), least);
-    let wanted = tiles.total_size();
-    let fits = wanted.x <= rect.width() + 0.5 && wanted.y <= rect.height() + 0.5;
+    let total = tiles.total_size();
+    // Half a point of tolerance for rounding errors.
+    let fits = total.x <= rect.width() + 0.5 && total.y <= rect.height() + 0.5;
     if !fits {
         // The tiles are then a single row (see `arrange`), whose scroll bar takes some height.
         tiles.size.y = (tiles.size.y - ui.spacing().scroll.allocated_width()).max(least.y);

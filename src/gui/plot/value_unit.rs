@@ -37,7 +37,8 @@ impl ValueUnit {
         }
     }
 
-    /// Returns the permitted widths for the visible range.
+    /// Returns the permitted widths for the visible range: the lower limit is far below what can be
+    /// read, the upper limit far above any response.
     pub(super) fn widths(self) -> Range {
         match self {
             Self::Decibel | Self::Ratio => Range {

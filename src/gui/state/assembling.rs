@@ -29,7 +29,7 @@ pub struct ReadingProgress {
     /// Name of the current file.
     pub name: String,
     /// Bytes of values read so far from the current file.
-    pub taken: u64,
+    pub read_bytes: u64,
 }
 
 /// Models being imported.
@@ -38,11 +38,11 @@ pub struct AssemblyState {
     /// The models with the rules applied.
     assembly: Assembly,
     /// Rules before each undoable change, oldest first.
-    earlier: Vec<Rules>,
+    undo_rules: Vec<Rules>,
     /// Rules before each undo, oldest first.
-    later: Vec<Rules>,
+    redo_rules: Vec<Rules>,
     /// Whether the engineer changed the rules; otherwise they are proposed.
-    are_changed: bool,
+    are_rules_changed: bool,
     /// The requested files and folders.
     pub sources: Vec<PathBuf>,
     /// Messages about unreadable content.
@@ -54,7 +54,7 @@ pub struct AssemblyState {
     /// The tables among the files, with the headings used to read them.
     pub tables: Headings,
     /// Units still needed to read these tables as frequency responses, by table.
-    pub unsaid: BTreeMap<String, Vec<UnitNotGiven>>,
+    pub missing_units: BTreeMap<String, Vec<UnitNotGiven>>,
     /// Progress of a running read.
     pub reading: Option<ReadingProgress>,
     /// Index of the displayed model.
@@ -85,7 +85,7 @@ impl AssemblyState {
         let mut models: Vec<FoundModel> = known.map(|part| part.found.clone()).collect();
         models.retain(|model| !found.iter().any(|new| new.key() == model.key()));
         models.extend(found);
-        let rules = if self.are_changed {
+        let rules = if self.are_rules_changed {
             self.assembly.rules().clone()
         } else {
             proposed_rules(name, &models)
@@ -103,7 +103,7 @@ impl AssemblyState {
         self.ignored.clear();
         self.unused.clear();
         self.tables.clear();
-        self.unsaid.clear();
+        self.missing_units.clear();
     }
 
     /// Replaces the rules as an undoable step.
@@ -111,41 +111,41 @@ impl AssemblyState {
         if rules == *self.assembly.rules() {
             return;
         }
-        self.earlier.push(self.assembly.rules().clone());
-        if self.earlier.len() > MOST_STEPS {
-            self.earlier.remove(0);
+        self.undo_rules.push(self.assembly.rules().clone());
+        if self.undo_rules.len() > MOST_STEPS {
+            self.undo_rules.remove(0);
         }
-        self.later.clear();
+        self.redo_rules.clear();
         self.apply(rules);
     }
 
     /// Undoes the last change to the rules.
     pub fn undo(&mut self) {
-        if let Some(rules) = self.earlier.pop() {
-            self.later.push(self.assembly.rules().clone());
+        if let Some(rules) = self.undo_rules.pop() {
+            self.redo_rules.push(self.assembly.rules().clone());
             self.apply(rules);
         }
     }
 
     /// Redoes the last undone change to the rules.
     pub fn redo(&mut self) {
-        if let Some(rules) = self.later.pop() {
-            self.earlier.push(self.assembly.rules().clone());
+        if let Some(rules) = self.redo_rules.pop() {
+            self.undo_rules.push(self.assembly.rules().clone());
             self.apply(rules);
         }
     }
 
     pub fn can_undo(&self) -> bool {
-        !self.earlier.is_empty()
+        !self.undo_rules.is_empty()
     }
 
     pub fn can_redo(&self) -> bool {
-        !self.later.is_empty()
+        !self.redo_rules.is_empty()
     }
 
     /// Applies rules that the engineer has changed, without recording a step.
     fn apply(&mut self, rules: Rules) {
-        self.are_changed = true;
+        self.are_rules_changed = true;
         self.assembly = self.assembly.with_rules(rules);
     }
 
@@ -154,7 +154,7 @@ impl AssemblyState {
         let mut alike = Vec::new();
         for (other, headings) in &self.tables {
             if Some(headings) == self.tables.get(file)
-                && self.unsaid.get(other) == self.unsaid.get(file)
+                && self.missing_units.get(other) == self.missing_units.get(file)
             {
                 alike.push(other);
             }

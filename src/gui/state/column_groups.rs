@@ -35,7 +35,7 @@ pub struct ColumnGroup {
     pub assumed: Vec<String>,
 }
 
-/// Position in the record lists: the condition, and the row in its list.
+/// Position in the record lists: the condition, and the index in its list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RecordPlace {
     pub condition: ConditionId,
@@ -56,7 +56,7 @@ pub struct AssumedUnits {
 }
 
 impl ColumnGroup {
-    fn new(row: &LaidOutRecord, columns: Vec<String>, layout: RecordLayout) -> Self {
+    fn new(record: &LaidOutRecord, columns: Vec<String>, layout: RecordLayout) -> Self {
         Self {
             columns,
             layout,
@@ -64,7 +64,7 @@ impl ColumnGroup {
             conditions: BTreeSet::new(),
             first: None,
             is_first_doubtful: false,
-            problems: row.problems.clone(),
+            problems: record.problems.clone(),
             assumed: Vec::new(),
         }
     }
@@ -82,13 +82,13 @@ impl ColumnGroup {
 
     /// Adds a record to the group; `place` is `None` for a record without a condition, which cannot
     /// be shown.
-    fn add(&mut self, row: &LaidOutRecord, place: Option<RecordPlace>) {
+    fn add(&mut self, record: &LaidOutRecord, place: Option<RecordPlace>) {
         self.records += 1;
         if self.problems.is_empty() {
-            self.problems.clone_from(&row.problems);
+            self.problems.clone_from(&record.problems);
         }
-        let assumed = assumed_channels(row);
-        let is_doubtful = !row.problems.is_empty() || !assumed.is_empty();
+        let assumed = assumed_channels(record);
+        let is_doubtful = !record.problems.is_empty() || !assumed.is_empty();
         for channel in assumed {
             if !self.assumed.contains(&channel) {
                 self.assumed.push(channel);

@@ -38,9 +38,11 @@ use gdcm_study::{Analysis, AssessmentTable, ConditionAnalysis};
 
 use super::background::{Background, error_bar_progress};
 
-/// Age \[s\] from which results for older settings are marked as stale.
+/// Age \[s\] from which results for older settings are marked as stale: the marks do not flicker
+/// while an analysis takes less.
 const STALE_AFTER_S: f64 = 0.15;
-/// Waiting time \[s\] after which a spinner is displayed.
+/// Waiting time \[s\] after which a spinner is displayed, somewhat after the marks for stale
+/// results.
 const SPINS_AFTER_S: f64 = 0.3;
 /// Duration \[s\] after which background work is displayed: most jobs end before a display could be
 /// read.
@@ -61,7 +63,8 @@ pub struct FirstResult {
 #[derive(Debug, Default)]
 pub struct Results {
     pub analysis: Option<Arc<Analysis>>,
-    /// The displayed condition's newer result, while `analysis` is older.
+    /// The displayed condition's newer result, computed before the other conditions, while
+    /// `analysis` is older.
     pub first: Option<FirstResult>,
     /// Costs of constraining or releasing each response, with their job; see `State::toggles`.
     pub toggles: Option<(TogglesJob, Arc<Toggles>)>,

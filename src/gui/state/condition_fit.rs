@@ -120,7 +120,7 @@ impl State {
         let Some((job, _)) = &records.found else {
             return false;
         };
-        records.changed || job.request.options.band != self.identified_band(condition)
+        records.changed_since_fit || job.request.options.band != self.identified_band(condition)
     }
 
     /// Returns a condition's records and fit; without loaded records, there are none.

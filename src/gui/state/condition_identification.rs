@@ -115,7 +115,7 @@ impl ConditionRecords {
     /// none once records or settings have changed.
     pub fn cautions(&self) -> impl Iterator<Item = (Vec<usize>, CautionNote)> {
         let cautions = match self.identification() {
-            Some(found) if !self.changed => found.cautions.as_slice(),
+            Some(found) if !self.changed_since_fit => found.cautions.as_slice(),
             _ => &[],
         };
         cautions.iter().map(|caution| {
@@ -189,7 +189,7 @@ impl ConditionRecords {
             return self;
         };
         if self.latest_job() != now.latest_job() {
-            self.changed = now.found.is_some();
+            self.changed_since_fit = now.found.is_some();
             self.found = now.found;
         }
         self.choose(now.chosen);

@@ -71,7 +71,7 @@ pub struct ConditionRecords {
         Result<Arc<Identification>, IdentificationError>,
     )>,
     /// Whether records or settings have changed since the latest identification.
-    pub changed: bool,
+    pub changed_since_fit: bool,
     /// Upper band limit \[rad/s\] that determines the common clock for resampled topics; `None` if
     /// unknown for some records.
     pub clock_band_end: Option<f64>,
@@ -330,7 +330,7 @@ impl ConditionRecords {
         for row in &mut self.rows {
             if row.layout.is_resampled(&row.table, channels) {
                 *row = row.laid_out(row.layout.clone(), channels);
-                self.changed = true;
+                self.changed_since_fit = true;
             }
         }
     }

@@ -195,7 +195,7 @@ impl Notices {
 
     /// Removes what a new decision makes obsolete: refused decisions, and offers to undo an earlier
     /// one.
-    pub fn follow_decision(&mut self) {
+    pub fn drop_obsolete_toasts(&mut self) {
         self.resolve(Activity::Decision);
         self.toasts
             .retain(|toast| toast.notice.action != Some(NoticeAction::Undo));
@@ -351,7 +351,7 @@ mod tests {
             ..notice(NoticeKind::Done, Activity::Other, "adopted")
         };
         notices.add(adopted);
-        notices.follow_decision();
+        notices.drop_obsolete_toasts();
         assert_eq!(shown(&notices), [""; 0]);
         assert_eq!(notices.messages().len(), 2);
     }

@@ -20,7 +20,7 @@ use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
 use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::plot::bode_event::BodeEvent;
-use crate::gui::plot::bode_scene::{EndName, PaneNote};
+use crate::gui::plot::bode_scene::{GroupName, PaneNote};
 use crate::gui::plot::pointed_curve_text::pointed_curve_text;
 use crate::gui::plot::quantity::BodeQuantity;
 use crate::gui::plot::readout_strip::{STRIP_HEIGHT, readout_strip_ui};
@@ -166,7 +166,7 @@ pub fn across_view_ui(
     let mut errors = std::mem::take(&mut frequency.across_error);
     let band = state.study.settings.band;
     let title = state.dataset().pair_name(state.display.selection.pair);
-    let names = end_names(state, &curves.responses);
+    let names = group_names(state, &curves.responses);
     let is_nothing_chosen =
         curves.responses.is_empty() && state.across().is_some() && !state.results.is_behind();
     let message = if is_nothing_chosen {
@@ -180,7 +180,7 @@ pub fn across_view_ui(
         stale: state.results.is_stale(ui.input(|input| input.time)),
         message: Some(message),
         cursor: pointed,
-        end_names: &names,
+        group_names: &names,
         reserves_readout: true,
         ..BodeScene::new(&title, &curves.responses, (band.min(), band.max()))
     };
@@ -197,10 +197,10 @@ pub fn across_view_ui(
     let error_scene = BodeScene {
         quantity: BodeQuantity::ScheduleError,
         curves: &curves.errors,
-        optima: curves.optima.as_ref(),
+        optima_range: curves.optima.as_ref(),
         notes: [shown_note, None],
         message: Some(&error_message),
-        end_names: &[],
+        group_names: &[],
         ..response_scene
     };
     // Step 4.
@@ -313,11 +313,11 @@ impl AcrossPlot<'_> {
 /// Returns the names in the right margin, where the curves end: one for each airspeed, in
 /// increasing order, with the condition count if it has several: "140 kt × 2". A name has the
 /// colour of its first curve.
-fn end_names(state: &State, curves: &[BodeCurve]) -> Vec<EndName> {
+fn group_names(state: &State, curves: &[BodeCurve]) -> Vec<GroupName> {
     struct AirspeedGroup {
         airspeed_kt: f64,
         conditions: Vec<ConditionId>,
-        name: EndName,
+        name: GroupName,
     }
     let mut groups: Vec<AirspeedGroup> = Vec::new();
     for curve in curves {
@@ -335,7 +335,7 @@ fn end_names(state: &State, curves: &[BodeCurve]) -> Vec<EndName> {
             groups.push(AirspeedGroup {
                 airspeed_kt,
                 conditions: Vec::new(),
-                name: EndName {
+                name: GroupName {
                     text: String::new(),
                     role: curve.role,
                     curves: Vec::new(),

@@ -52,12 +52,12 @@ pub fn bode_view_ui(
     let notes = effect_notes(state, pair);
     let scene = BodeScene {
         quantity: response_quantity(state, &ratio_unit),
-        rules: &unnoticed,
+        reference_lines: &unnoticed,
         coherence: &coherence,
         least_coherence,
-        bands: &bands,
-        shows_bands,
-        missing: missing.as_ref(),
+        uncertainty_bands: &bands,
+        shows_uncertainty: shows_bands,
+        remaining_phase: missing.as_ref(),
         invalid: invalid.as_ref(),
         notes: match &notes {
             Some([magnitude, phase]) => [Some(magnitude), Some(phase)],

@@ -9,14 +9,14 @@ use gdcm_study::Edit;
 
 use crate::gui::commands::command::Command;
 use crate::gui::commands::selection::SelectionCommand;
-use crate::gui::plot::chips::Chip;
+use crate::gui::plot::chips::Restriction;
 use crate::gui::plot::curve_command::CurveCommand;
 use crate::gui::state::window_state::State;
 
 /// Chips, each with the command carried out by a click.
 #[derive(Default)]
 pub(super) struct CurveChips {
-    pub(super) chips: Vec<Chip>,
+    pub(super) chips: Vec<Restriction>,
     /// Commands, in the order of `chips`.
     pub(super) commands: Vec<Command>,
 }
@@ -33,7 +33,7 @@ impl CurveChips {
     }
 
     fn add(&mut self, text: String, hint: &str, command: impl Into<Command>) {
-        self.chips.push(Chip {
+        self.chips.push(Restriction {
             text,
             hint: hint.to_owned(),
         });

@@ -64,8 +64,8 @@ impl FrequencyPlot<'_> {
             readout: readout.as_ref(),
             hidden_roles: Some(&display.hidden_roles),
             raised: display.raised,
-            names_curves: state.display.layout.is_wide && quantity.is_of_condition(),
-            chips: &chips.chips,
+            names_roles: state.display.layout.is_wide && quantity.is_of_condition(),
+            restrictions: &chips.chips,
             unit,
             stale: state.results.is_stale(ui.input(|input| input.time)),
             ..scene
@@ -77,7 +77,7 @@ impl FrequencyPlot<'_> {
                         commands.push(OutputCommand::CopyText(values_text(quantity, curve)).into());
                     }
                 }
-                BodeEvent::ChipClicked(index) => {
+                BodeEvent::RestrictionClicked(index) => {
                     commands.extend(chips.commands.get(index).cloned());
                 }
                 other => commands.extend(event_command(state, other)),
@@ -133,7 +133,7 @@ fn event_command(state: &State, event: BodeEvent) -> Option<Command> {
         | BodeEvent::ClickUndone(_)
         | BodeEvent::Isolated(_)
         | BodeEvent::RejectedBecause(..)
-        | BodeEvent::ChipClicked(_) => None,
+        | BodeEvent::RestrictionClicked(_) => None,
     }
 }
 

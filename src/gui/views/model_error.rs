@@ -55,9 +55,9 @@ pub fn error_view_ui(
     }
     let scene = BodeScene {
         quantity,
-        rules: &rules,
+        reference_lines: &rules,
         reference: reference.as_ref(),
-        strips: &strips,
+        noticed_ranges: &strips,
         omega_range,
         message: Some(&message),
         ..BodeScene::new(&title, &curves, (band.min(), band.max()))

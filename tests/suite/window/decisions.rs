@@ -175,7 +175,7 @@ fn the_badge_says_proven_and_every_cell_says_what_holding_or_freeing_it_costs() 
         let (gain, _) = state(&window).toggles().unwrap().of_pair(pair);
         assert!(gain.is_some(), "{output}/{input}");
         let name = state(&window).dataset().pair_name(pair);
-        let costs = toggle_costs(state(&window), pair);
+        let costs = toggle_cost_texts(state(&window), pair);
         assert!(costs.iter().any(|cost| cost.contains(&name)), "{costs:?}");
     }
 }
@@ -194,7 +194,7 @@ fn held_gains_out_of_reach_are_explained_and_the_explanation_is_exported() {
     window.get_by_label_contains(&gain.message.text);
     let shown = state(&window).shown().unwrap();
     assert!(remark_codes(&window).contains(&"gains-missed"));
-    let (marked, _) = gain_conflict_marks(shown);
+    let marked = MatrixMarks::new(shown).pairs;
     assert!(marked.contains(&pair(&window, "Q", "LON")));
 
     let folder = tempfile::tempdir().unwrap();

@@ -20,7 +20,7 @@ fn a_foreign_tree_with_a_turned_channel_and_inches_is_carried_to_corrected_model
         analysis
             .doubts
             .iter()
-            .filter_map(|doubt| Some(doubt.turns()?.name_in(state(window).dataset())))
+            .filter_map(|doubt| Some(doubt.channel_to_reverse()?.name_in(state(window).dataset())))
             .collect()
     }
 
@@ -148,7 +148,7 @@ fn a_unit_that_neither_a_record_nor_its_samples_say_is_assumed_and_chosen_in_the
         asked.cautions
     );
     assert!(asked.flight.is_some(), "the unit of the dataset is assumed");
-    give(&mut window, RecordsCommand::Show(RecordsPage::Columns));
+    give(&mut window, RecordsCommand::ShowPage(RecordsPage::Columns));
     window.run_steps(2);
     window.get_by_label("Unit of the column of Q").click();
     window.run_steps(3);

@@ -48,8 +48,8 @@ use egui_kittest::kittest::{NodeT, Queryable};
 
 use gdcm::executor::Pool;
 use gdcm::gui::app::{GdcmApp, Setup};
-use gdcm::gui::panels::derivation_sheet::toggle_costs;
-use gdcm::gui::panels::matrix_panel::gain_conflict_marks;
+use gdcm::gui::panels::derivation_sheet::toggle_cost_texts;
+use gdcm::gui::panels::matrix_panel::MatrixMarks;
 use gdcm::gui::plot::{BodeCurve, Pane, Role as CurveRole};
 use gdcm::gui::state::notices::{MessageBar, NoticeKind};
 use gdcm::gui::state::record_change::RecordChange;

@@ -90,7 +90,8 @@ fn cautions_stand_as_marks_at_their_places_and_their_buttons_act() {
     window.get_by_label_contains("⚠ no coherent response");
     press(&mut window, "Fit flight 3 too");
     assert!(
-        records(&window).rows.iter().all(|row| !row.guess.held_out) && records(&window).changed
+        records(&window).rows.iter().all(|row| !row.guess.held_out)
+            && records(&window).changed_since_fit
     );
     assert!(
         window.query_by_label("Cautions of flight 3").is_none(),

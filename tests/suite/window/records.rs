@@ -44,7 +44,7 @@ fn records_window() -> Window {
         state(window).records.conditions.len() == 11 && state(window).records.reading.is_none()
     });
     assert_eq!(rows(&window), 9);
-    give(&mut window, RecordsCommand::Choose(0));
+    give(&mut window, RecordsCommand::ChooseRecord(0));
     window
 }
 
@@ -386,7 +386,7 @@ fn the_view_opens_on_a_sweep_of_the_input_in_focus_until_a_record_is_chosen() {
         assert_eq!(displayed(&window), format!("cond10_sweep_{name}_1"));
         window.get_by_label_contains(&format!("{name} at the cursor"));
     }
-    give(&mut window, RecordsCommand::Choose(0));
+    give(&mut window, RecordsCommand::ChooseRecord(0));
     give(
         &mut window,
         SelectionCommand::FocusPair(Pair {
@@ -913,7 +913,7 @@ fn a_part_counts_from_the_start_of_the_record_too_and_one_without_samples_is_ref
         RecordsCommand::Add(vec![folder.path().join("cond10_prbs.csv")]),
     );
     wait_until(&mut window, "the record", |window| rows(window) == 10);
-    give(&mut window, RecordsCommand::Choose(9));
+    give(&mut window, RecordsCommand::ChooseRecord(9));
     let span_s = state(&window).records.conditions[&CONDITION_10_ID].rows[9]
         .span_s()
         .unwrap();
@@ -1487,7 +1487,7 @@ fn the_quadrotor_is_identified_in_the_window_from_its_log_alone() {
     give(&mut window, RecordsCommand::SetReferences(Vec::new()));
     click(&mut window, "Identify");
     wait_until(&mut window, "the models of the sweep", |window| {
-        !state(window).records.conditions[&of].changed
+        !state(window).records.conditions[&of].changed_since_fit
     });
     click(&mut window, "Use x0 as reference");
     assert_eq!(state(&window).records.conditions[&of].references, ["x0"]);
@@ -1689,7 +1689,7 @@ fn the_physics_model_of_the_real_aircraft_is_corrected_from_its_flights() {
     window.run_steps(2);
     give(
         &mut window,
-        RecordsCommand::TakeAll(AdoptionChoice::REFINED),
+        RecordsCommand::AdoptAll(AdoptionChoice::REFINED),
     );
     settle(&mut window);
     let shown = state(&window).shown().expect("the models are compared");

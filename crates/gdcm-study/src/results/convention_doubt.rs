@@ -29,7 +29,7 @@ pub struct ConventionDoubt {
 
 impl ConventionDoubt {
     /// Returns the channel whose sign should be reversed; `None` if the unit is in doubt.
-    pub fn turns(&self) -> Option<Channel> {
+    pub fn channel_to_reverse(&self) -> Option<Channel> {
         match self.convention {
             Convention::Sign => Some(self.channel),
             Convention::Factor(_) => None,

@@ -106,7 +106,7 @@ fn not_a_delay(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
         let has_doubtful_sign = result
             .doubts
             .iter()
-            .any(|doubt| doubt.turns().is_some() && doubt.pairs.contains(&pair));
+            .any(|doubt| doubt.channel_to_reverse().is_some() && doubt.pairs.contains(&pair));
         let (Some(median_s), Some(band_s)) = (delta.delay_s[pair], delta.band_delay_s[pair]) else {
             continue;
         };

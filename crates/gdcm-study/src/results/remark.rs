@@ -214,10 +214,12 @@ impl Remark {
     /// Returns the sign change that the remark suggests, if any.
     pub fn suggested_sign(&self) -> Option<SuggestedSign> {
         match self {
-            Self::ConventionDoubt(doubt) => doubt.turns().map(|channel| SuggestedSign {
-                channel,
-                role: Some(SignRole::Identified),
-            }),
+            Self::ConventionDoubt(doubt) => {
+                doubt.channel_to_reverse().map(|channel| SuggestedSign {
+                    channel,
+                    role: Some(SignRole::Identified),
+                })
+            }
             Self::ChannelTurned { channel, .. } => Some(SuggestedSign {
                 channel: *channel,
                 role: None,

@@ -23,7 +23,7 @@ const ROW: f32 = 24.0;
 /// Maximum height of the file list \[pt\].
 const FILES: f32 = 7.0 * ROW;
 /// Height of the area with a file's first lines \[pt\].
-const HEAD: f32 = 104.0;
+const FIRST_LINES: f32 = 104.0;
 
 /// Draws the files with their sizes, and the first lines of the selected file.
 pub(super) fn files_ui(ui: &mut Ui, state: &mut State, palette: &Palette) {
@@ -61,7 +61,7 @@ pub(super) fn files_ui(ui: &mut Ui, state: &mut State, palette: &Palette) {
             });
         ui.add_space(6.0);
         if let Some(entry) = entries.get(selected) {
-            head_ui(ui, entry, palette);
+            first_lines_ui(ui, entry, palette);
         }
     });
     state.forms.export.selected = selected;
@@ -75,7 +75,7 @@ struct Entry<'a> {
     /// Size, as far as it is known.
     size: String,
     /// First lines of the file, or the headings of the report.
-    head: &'a [String],
+    first_lines: &'a [String],
     is_fault: bool,
 }
 
@@ -86,14 +86,14 @@ impl<'a> Entry<'a> {
                 name: &file.name,
                 words: file_summary_text(&contents.summary),
                 size: size_words(contents.bytes.len()),
-                head: &contents.head,
+                first_lines: &contents.head,
                 is_fault: false,
             },
             Err(fault) => Self {
                 name: &file.name,
                 words: fault.to_string(),
                 size: String::new(),
-                head: &[],
+                first_lines: &[],
                 is_fault: true,
             },
         }
@@ -102,7 +102,7 @@ impl<'a> Entry<'a> {
     /// Describes the report: its contents once it is composed, before that the progress.
     fn of_report(name: &'a str, report: Option<&'a Report>, state: &State) -> Self {
         let progress = state.results.background.report_contents;
-        let (words, size, head) = match (report, progress) {
+        let (words, size, first_lines) = match (report, progress) {
             (Some(report), _) => (
                 file_summary_text(&report.summary),
                 size_words(report.html.len()),
@@ -121,7 +121,7 @@ impl<'a> Entry<'a> {
             name,
             words,
             size,
-            head,
+            first_lines,
             is_fault: false,
         }
     }
@@ -216,7 +216,7 @@ fn entry_ui(ui: &mut Ui, entry: &Entry<'_>, is_selected: bool, palette: &Palette
 }
 
 /// Draws the first lines of a file, or why it cannot be written.
-fn head_ui(ui: &mut Ui, entry: &Entry<'_>, palette: &Palette) {
+fn first_lines_ui(ui: &mut Ui, entry: &Entry<'_>, palette: &Palette) {
     let frame = Frame::new()
         .fill(palette.background)
         .stroke(Stroke::new(1.0, palette.line))
@@ -224,13 +224,13 @@ fn head_ui(ui: &mut Ui, entry: &Entry<'_>, palette: &Palette) {
         .inner_margin(8.0);
     frame.show(ui, |ui| {
         ui.set_width(ui.available_width());
-        ui.set_height(HEAD - 16.0);
+        ui.set_height(FIRST_LINES - 16.0);
         ScrollArea::both()
             .id_salt(("head", entry.name))
             .auto_shrink(false)
             .show(ui, |ui| {
                 ui.spacing_mut().item_spacing.y = 1.0;
-                for line in entry.head {
+                for line in entry.first_lines {
                     let text = RichText::new(line).size(SMALL_SIZE).color(palette.text);
                     ui.add(Label::new(text).extend());
                 }

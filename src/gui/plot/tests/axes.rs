@@ -6,20 +6,28 @@ use egui_kittest::kittest::Queryable;
 use gdcm_plot::figure::Range;
 
 use super::super::bode_axis::NOT_INCREASING;
-use super::bode::{Model, harness, three_curves};
+use super::bode::{PlotState, harness, three_curves};
 use super::*;
 
-/// Returns the visible frequencies \[rad/s\], magnitudes and phases.
-fn ranges(harness: &Harness<'_, Model>) -> ((f64, f64), Range, Range) {
-    let view = &harness.state().view;
-    (
-        view.omega_range(),
-        view.value_range(Pane::Magnitude),
-        view.value_range(Pane::Phase),
-    )
+/// Visible ranges of a Bode plot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct VisibleRanges {
+    /// Frequencies \[rad/s\].
+    omega: (f64, f64),
+    magnitudes: Range,
+    phases: Range,
 }
 
-fn middle_of(harness: &Harness<'_, Model>, label: &str) -> Pos2 {
+fn ranges(harness: &Harness<'_, PlotState>) -> VisibleRanges {
+    let view = &harness.state().view;
+    VisibleRanges {
+        omega: view.omega_range(),
+        magnitudes: view.value_range(Pane::Magnitude),
+        phases: view.value_range(Pane::Phase),
+    }
+}
+
+fn middle_of(harness: &Harness<'_, PlotState>, label: &str) -> Pos2 {
     harness.get_by_label(label).rect().center()
 }
 
@@ -38,11 +46,14 @@ fn the_wheel_over_an_axis_zooms_that_axis_alone() {
         harness.run_steps(12);
         let after = ranges(&harness);
         assert_eq!(
-            (after.0 != before.0, after.1 != before.1),
-            (zooms_frequencies, !zooms_frequencies),
+            [
+                after.omega != before.omega,
+                after.magnitudes != before.magnitudes
+            ],
+            [zooms_frequencies, !zooms_frequencies],
             "{axis}"
         );
-        assert_eq!(after.2, before.2, "{axis}");
+        assert_eq!(after.phases, before.phases, "{axis}");
     }
 }
 
@@ -59,16 +70,22 @@ fn dragging_an_axis_pans_that_axis_alone() {
         );
         let after = ranges(&harness);
         assert_eq!(
-            (after.0 != before.0, after.1 != before.1),
-            (pans_frequencies, !pans_frequencies),
+            [
+                after.omega != before.omega,
+                after.magnitudes != before.magnitudes
+            ],
+            [pans_frequencies, !pans_frequencies],
             "{axis}"
         );
-        let same_width = (after.1.width() - before.1.width()).abs() < 1e-9;
-        assert!(same_width && after.2 == before.2, "{axis}");
+        let widened = after.magnitudes.width() - before.magnitudes.width();
+        assert!(
+            widened.abs() < 1e-9 && after.phases == before.phases,
+            "{axis}"
+        );
     }
 }
 
-fn type_limits(harness: &mut Harness<'_, Model>, axis: &str, limits: [&str; 2]) {
+fn type_limits(harness: &mut Harness<'_, PlotState>, axis: &str, limits: [&str; 2]) {
     let at = middle_of(harness, axis);
     click(harness, at);
     click(harness, at);
@@ -89,7 +106,7 @@ fn type_limits(harness: &mut Harness<'_, Model>, axis: &str, limits: [&str; 2]) 
 fn limits_can_be_typed_and_invalid_limits_are_refused_with_a_message() {
     let mut harness = harness(three_curves());
     type_limits(&mut harness, FREQUENCIES, ["2", "8"]);
-    let (min, max) = ranges(&harness).0;
+    let (min, max) = ranges(&harness).omega;
     // The tolerance allows for rounding errors of a logarithm and its inverse.
     assert!(
         (min - 2.0).abs() < 1e-12 && (max - 8.0).abs() < 1e-12,
@@ -102,7 +119,7 @@ fn limits_can_be_typed_and_invalid_limits_are_refused_with_a_message() {
     harness.run_steps(40);
     type_limits(&mut harness, MAGNITUDES, ["10", "-10"]);
     harness.get_by_label(NOT_INCREASING);
-    assert_ne!(ranges(&harness).1, Range::new(-10.0, 10.0));
+    assert_ne!(ranges(&harness).magnitudes, Range::new(-10.0, 10.0));
 }
 
 #[test]
@@ -116,21 +133,25 @@ fn a_plot_with_the_focus_is_panned_and_zoomed_from_the_keyboard() {
     harness.key_press(Key::ArrowRight);
     harness.run();
     let right = ranges(&harness);
-    assert!(right.0.0 > fitted.0.0 && right.1 == fitted.1, "arrows pan");
+    assert!(
+        right.omega.0 > fitted.omega.0 && right.magnitudes == fitted.magnitudes,
+        "arrows pan"
+    );
     harness.key_press(Key::ArrowUp);
     harness.run();
     let up = ranges(&harness);
-    assert!(up.1.min > right.1.min && up.0 == right.0);
+    assert!(up.magnitudes.min > right.magnitudes.min && up.omega == right.omega);
     harness.key_press_modifiers(Modifiers::SHIFT, Key::Plus);
     harness.run();
     let closer = ranges(&harness);
     assert!(
-        closer.0.1 / closer.0.0 < up.0.1 / up.0.0 && closer.1 == up.1,
+        closer.omega.1 / closer.omega.0 < up.omega.1 / up.omega.0
+            && closer.magnitudes == up.magnitudes,
         "Shift: frequencies only"
     );
     harness.key_press(Key::Minus);
     harness.run();
-    assert!(ranges(&harness).1.width() > closer.1.width());
+    assert!(ranges(&harness).magnitudes.width() > closer.magnitudes.width());
     harness.key_press(Key::Home);
     harness.run();
     assert_eq!(ranges(&harness), fitted);

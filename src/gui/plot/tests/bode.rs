@@ -9,7 +9,8 @@ use crate::gui::plot::bode_event::{BodeEvent, CurveAction};
 use crate::gui::plot::curve_command::CurveCommand;
 use crate::gui::widgets::palette::{self, Palette};
 
-pub(super) struct Model {
+/// Test state: a Bode plot, its curves, and the events so far.
+pub(super) struct PlotState {
     pub(super) curves: Vec<BodeCurve>,
     pub(super) band: (f64, f64),
     pub(super) view: BodeView,
@@ -17,8 +18,8 @@ pub(super) struct Model {
     pub(super) hidden_roles: BTreeSet<Role>,
 }
 
-pub(super) fn harness(curves: Vec<BodeCurve>) -> Harness<'static, Model> {
-    let model = Model {
+pub(super) fn harness(curves: Vec<BodeCurve>) -> Harness<'static, PlotState> {
+    let state = PlotState {
         curves,
         band: (0.5, 12.0),
         view: BodeView::default(),
@@ -30,20 +31,20 @@ pub(super) fn harness(curves: Vec<BodeCurve>) -> Harness<'static, Model> {
         .with_size(vec2(900.0, 600.0))
         .with_context_setup(palette::apply)
         .build_ui_state(
-            |ui, model: &mut Model| {
+            |ui, state: &mut PlotState| {
                 let scene = BodeScene {
-                    hidden_roles: Some(&model.hidden_roles),
-                    ..BodeScene::new("LON → Q", &model.curves, model.band)
+                    hidden_roles: Some(&state.hidden_roles),
+                    ..BodeScene::new("LON → Q", &state.curves, state.band)
                 };
                 let palette = Palette::from_visuals(ui.visuals());
-                for event in bode_ui(ui, &scene, &mut model.view, &palette) {
+                for event in bode_ui(ui, &scene, &mut state.view, &palette) {
                     if let BodeEvent::BandDragged { min, max } = event {
-                        model.band = (min, max);
+                        state.band = (min, max);
                     }
-                    model.events.push(event);
+                    state.events.push(event);
                 }
             },
-            model,
+            state,
         );
     harness.run();
     harness
@@ -58,7 +59,7 @@ pub(super) fn three_curves() -> Vec<BodeCurve> {
 }
 
 /// Returns a point on the magnitude of curve `index` at the frequency of sample `k`.
-pub(super) fn point_on(harness: &Harness<'_, Model>, index: usize, k: usize) -> Pos2 {
+pub(super) fn point_on(harness: &Harness<'_, PlotState>, index: usize, k: usize) -> Pos2 {
     let curve = &harness.state().curves[index];
     harness
         .state()
@@ -68,16 +69,16 @@ pub(super) fn point_on(harness: &Harness<'_, Model>, index: usize, k: usize) -> 
 }
 
 /// Returns a position in the magnitude plot that is far from every curve.
-pub(super) fn empty_spot(harness: &Harness<'_, Model>) -> Pos2 {
+pub(super) fn empty_spot(harness: &Harness<'_, PlotState>) -> Pos2 {
     point_on(harness, 2, 60) + vec2(0.0, 40.0)
 }
 
 /// Like [`empty_spot`], for a plot with a single curve.
-fn empty_spot_of_one(harness: &Harness<'_, Model>) -> Pos2 {
+fn empty_spot_of_one(harness: &Harness<'_, PlotState>) -> Pos2 {
     point_on(harness, 0, 60) + vec2(0.0, 40.0)
 }
 
-pub(super) fn clicks(harness: &Harness<'_, Model>) -> Vec<BodeEvent> {
+pub(super) fn clicks(harness: &Harness<'_, PlotState>) -> Vec<BodeEvent> {
     let is_click = |event: &&BodeEvent| {
         matches!(
             event,
@@ -145,7 +146,7 @@ fn hovering_is_reported_once_when_it_begins_and_once_when_it_ends() {
 fn dragging_an_end_of_the_band_moves_it_and_not_the_plot() {
     let mut harness = harness(three_curves());
     let before = harness.state().view.omega_range();
-    let at = |harness: &Harness<'_, Model>, omega| {
+    let at = |harness: &Harness<'_, PlotState>, omega| {
         harness
             .state()
             .view
@@ -154,21 +155,21 @@ fn dragging_an_end_of_the_band_moves_it_and_not_the_plot() {
     };
     let path = [at(&harness, 0.5), at(&harness, 0.8), at(&harness, 1.0)];
     drag(&mut harness, &path, PointerButton::Primary);
-    let model = harness.state();
+    let state = harness.state();
     assert!(
-        (model.band.0 - 1.0).abs() < 1e-3 && model.band.1 == 12.0,
+        (state.band.0 - 1.0).abs() < 1e-3 && state.band.1 == 12.0,
         "{:?}",
-        model.band
+        state.band
     );
     assert_eq!(
-        model
+        state
             .events
             .iter()
             .filter(|event| **event == BodeEvent::BandReleased)
             .count(),
         1
     );
-    assert_eq!(model.view.omega_range(), before);
+    assert_eq!(state.view.omega_range(), before);
 }
 
 #[test]
@@ -195,7 +196,7 @@ fn panning_one_plot_pans_the_frequencies_of_both() {
 #[test]
 fn a_box_drawn_with_the_secondary_button_is_zoomed_into() {
     let mut harness = harness(three_curves());
-    let at = |harness: &Harness<'_, Model>, omega, db| {
+    let at = |harness: &Harness<'_, PlotState>, omega, db| {
         harness
             .state()
             .view
@@ -241,7 +242,7 @@ fn a_notch_of_the_wheel_zooms_by_a_tenth_and_stops_a_decade_beyond_the_data() {
     let mut harness = harness(three_curves());
     harness.hover_at(point_on(&harness, 1, 60));
     harness.step();
-    let decades = |harness: &Harness<'_, Model>| {
+    let decades = |harness: &Harness<'_, PlotState>| {
         let (min, max) = harness.state().view.omega_range();
         (max / min).log10()
     };
@@ -330,9 +331,10 @@ fn a_double_click_on_a_curve_takes_its_first_click_back_and_leaves_the_view() {
 #[test]
 fn values_are_fitted_to_other_curves_until_the_engineer_zooms_them() {
     let mut harness = harness(three_curves());
-    let heights = |harness: &Harness<'_, Model>| harness.state().view.value_range(Pane::Magnitude);
+    let heights =
+        |harness: &Harness<'_, PlotState>| harness.state().view.value_range(Pane::Magnitude);
     let first = heights(&harness);
-    let other = |harness: &mut Harness<'_, Model>, gain_db| {
+    let other = |harness: &mut Harness<'_, PlotState>, gain_db| {
         harness.state_mut().curves = vec![lag(5, gain_db, 1.0, Role::Nominal)];
         harness.state_mut().view.request_refit();
         harness.run();
@@ -550,7 +552,7 @@ fn a_secondary_click_on_the_ground_marks_the_frequency_there() {
 }
 
 /// Counts the long lines in the last frame: curves drawn as lines instead of an image.
-fn long_lines(harness: &Harness<'_, Model>) -> usize {
+fn long_lines(harness: &Harness<'_, PlotState>) -> usize {
     let is_long =
         |shape: &egui::Shape| matches!(shape, egui::Shape::Path(path) if path.points.len() > 10);
     harness

@@ -11,8 +11,8 @@ use crate::gui::widgets::palette::{self, Palette};
 const TITLES: [&str; 2] = ["one", "other"];
 const SIZE: egui::Vec2 = vec2(600.0, 200.0);
 
-/// Two stacked charts with 10,000 samples of `y = x` and of `y = -x` from 0 to 100; the state holds
-/// the visible bounds of each.
+/// Returns two stacked charts with 10,000 samples of `y = x` and of `y = -x` from 0 to 100; the
+/// state holds the visible bounds of each.
 fn harness() -> Harness<'static, Vec<PlotBounds>> {
     let line = |slope: f64| -> Arc<[[f64; 2]]> {
         (0..10_000)
@@ -21,13 +21,14 @@ fn harness() -> Harness<'static, Vec<PlotBounds>> {
             .collect()
     };
     let lines = [line(1.0), line(-1.0)];
-    let draw = move |ui: &mut egui::Ui, views: &mut Vec<PlotBounds>| {
+    let draw = move |ui: &mut egui::Ui, visible: &mut Vec<PlotBounds>| {
         let palette = Palette::from_visuals(ui.visuals());
         let corner = ui.max_rect().min;
-        views.clear();
+        visible.clear();
         for (row, (title, points)) in TITLES.into_iter().zip(&lines).enumerate() {
             let mut chart = Chart::new(title, ChartAxis::Linear, "", "");
-            (chart.group, chart.fits_values) = (Some(Id::unique("group")), true);
+            chart.group = Some(Id::unique("group"));
+            chart.fits_values = true;
             let color = palette.text;
             chart.lines.push(ChartLine {
                 points: Arc::clone(points),
@@ -39,7 +40,7 @@ fn harness() -> Harness<'static, Vec<PlotBounds>> {
             chart_ui(ui, rect, &chart, &palette);
             let memory = PlotMemory::load(ui.ctx(), ui.make_persistent_id((title, chart.group)))
                 .expect("it was drawn");
-            views.push(*memory.transform().bounds());
+            visible.push(*memory.transform().bounds());
         }
     };
     let mut harness = Harness::builder()
@@ -72,13 +73,14 @@ fn the_wheel_zooms_the_time_of_every_chart_and_the_values_in_view_fill_each() {
         "a factor of e^2: {left} to {right}"
     );
     assert_eq!([zoomed[1].min()[0], zoomed[1].max()[0]], [left, right]);
-    for (view, slope) in zoomed.iter().zip([1.0, -1.0]) {
+    for (visible, slope) in zoomed.iter().zip([1.0, -1.0]) {
         let mut ends = [slope * left, slope * right];
         ends.sort_by(f64::total_cmp);
         let margin = 0.15 * (right - left);
         assert!(
-            (view.min()[1] - ends[0]).abs() < margin && (view.max()[1] - ends[1]).abs() < margin,
-            "{view:?}"
+            (visible.min()[1] - ends[0]).abs() < margin
+                && (visible.max()[1] - ends[1]).abs() < margin,
+            "{visible:?}"
         );
     }
     double_click(&mut harness, at);
@@ -125,7 +127,7 @@ fn dragging_moves_the_time_of_every_chart_and_the_values_follow() {
         moved[0].min()[0] > 10.0 && moved[1].min()[0] == moved[0].min()[0],
         "{moved:?}"
     );
-    let widths = [&whole, &moved].map(|views| views[0].width());
+    let widths = [&whole, &moved].map(|visible| visible[0].width());
     assert!((widths[0] - widths[1]).abs() < 1e-6);
     // The values fit the samples from the start of the view to the last sample (`y = x`).
     assert!(

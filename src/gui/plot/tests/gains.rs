@@ -14,7 +14,7 @@ use crate::gui::widgets::palette::Palette;
 
 /// Test state: a figure with interactive dots, or with interactive columns if there are any.
 #[derive(Default)]
-struct Model {
+struct PlotState {
     figure: Figure,
     columns: Vec<MarkId>,
     zooms: bool,
@@ -36,18 +36,17 @@ fn id(number: usize) -> MarkId {
 }
 
 fn panel(first_gain: f64) -> Panel {
-    let places = [(45.0, first_gain), (60.0, 0.9), (120.0, 1.02), (120.0, 1.0)];
-    let dot = |(number, (x, y)): (usize, (f64, f64))| Dot {
-        x,
-        y,
-        label: (number + 1).to_string(),
-        id: Some(id(number)),
-    };
-    let dots = Dots::new("optimum", DotShape::Circle, Color::INK);
-    let dots = Dots {
-        dots: places.into_iter().enumerate().map(dot).collect(),
-        ..dots
-    };
+    let airspeeds_kt = [45.0, 60.0, 120.0, 120.0];
+    let gains = [first_gain, 0.9, 1.02, 1.0];
+    let mut dots = Dots::new("optimum", DotShape::Circle, Color::INK);
+    for (number, (x, y)) in airspeeds_kt.into_iter().zip(gains).enumerate() {
+        dots.dots.push(Dot {
+            x,
+            y,
+            label: (number + 1).to_string(),
+            id: Some(id(number)),
+        });
+    }
     let schedule = Curve::new(
         "schedule",
         CurveRole::Scheduled.stroke(false),
@@ -72,39 +71,39 @@ fn figure(count: usize) -> Figure {
         .with_ranges()
 }
 
-fn harness(model: Model) -> Harness<'static, Model> {
+fn harness(state: PlotState) -> Harness<'static, PlotState> {
     let builder = Harness::builder()
         .with_step_dt(0.02)
         .with_size(vec2(900.0, 230.0));
     let mut harness = builder.with_context_setup(palette::apply).build_ui_state(
-        |ui, model: &mut Model| {
+        |ui, state: &mut PlotState| {
             let scene = FigureScene {
                 selected: Some(id(2)),
-                columns: &model.columns,
-                zooms: model.zooms,
+                columns: &state.columns,
+                zooms: state.zooms,
                 ..FigureScene::new(
                     "gains",
-                    &model.figure,
+                    &state.figure,
                     vec2(122.0, 120.0),
                     "Nothing to draw",
                     &Numbers,
                 )
             };
             let palette = Palette::from_visuals(ui.visuals());
-            model
+            state
                 .events
-                .extend(figure_ui(ui, &scene, &mut model.view, &palette));
+                .extend(figure_ui(ui, &scene, &mut state.view, &palette));
         },
-        model,
+        state,
     );
     harness.run();
     harness
 }
 
-fn gains(count: usize) -> Harness<'static, Model> {
-    harness(Model {
+fn gains(count: usize) -> Harness<'static, PlotState> {
+    harness(PlotState {
         figure: figure(count),
-        ..Model::default()
+        ..PlotState::default()
     })
 }
 
@@ -156,9 +155,9 @@ fn every_plot_has_the_same_gain_axis() {
 #[test]
 fn a_dot_without_a_gain_is_left_out() {
     let figure = Figure::default().plot(Plot::new("LON").panel(panel(f64::NAN)));
-    let harness = harness(Model {
+    let harness = harness(PlotState {
         figure,
-        ..Model::default()
+        ..PlotState::default()
     });
     assert!(
         harness
@@ -195,10 +194,10 @@ fn a_click_on_a_column_names_it_and_its_plot() {
     let figure = Figure::default()
         .plot(Plot::new("LAT → P").panel(panel.clone()))
         .plot(Plot::new("LON → Q").panel(panel));
-    let mut harness = harness(Model {
+    let mut harness = harness(PlotState {
         figure,
         columns: vec![id(1), id(3), id(10)],
-        ..Model::default()
+        ..PlotState::default()
     });
     for (column, condition) in [(1.0, 3), (2.0, 10)] {
         let at = harness.state().view.position(1, [column, -5.0]).unwrap();
@@ -217,12 +216,12 @@ fn a_click_on_a_column_names_it_and_its_plot() {
 
 #[test]
 fn the_wheel_zooms_a_plot_and_a_double_click_beside_its_dots_shows_all() {
-    let mut harness = harness(Model {
+    let mut harness = harness(PlotState {
         figure: figure(1),
         zooms: true,
-        ..Model::default()
+        ..PlotState::default()
     });
-    let ranges = |harness: &Harness<'_, Model>| {
+    let ranges = |harness: &Harness<'_, PlotState>| {
         ranges_of(harness.state().view.transform(0).unwrap().bounds())
     };
     let whole = ranges(&harness);
@@ -269,9 +268,9 @@ fn a_label_longer_than_its_axis_leaves_its_unit_alone() {
         ]
         .map(labelled),
     );
-    let harness = harness(Model {
+    let harness = harness(PlotState {
         figure: figure.with_ranges(),
-        ..Model::default()
+        ..PlotState::default()
     });
     let shapes = harness.output().shapes.iter();
     let upright = shapes.filter_map(|drawn| match &drawn.shape {

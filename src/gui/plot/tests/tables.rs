@@ -15,28 +15,29 @@ use crate::gui::plot::steady_range::AxisUpdate;
 use crate::gui::widgets::palette;
 use crate::gui::widgets::palette::Palette;
 
+/// Test state: an overview that shows the same curves in every cell, and the events so far.
 #[derive(Default)]
-struct Model {
+struct PlotState {
     curves: Vec<BodeCurve>,
     overview: OverviewView,
-    pairs: Vec<OverviewEvent>,
+    events: Vec<OverviewEvent>,
 }
 
-fn overview_harness(curves: Vec<BodeCurve>) -> Harness<'static, Model> {
-    let model = Model {
+fn overview_harness(curves: Vec<BodeCurve>) -> Harness<'static, PlotState> {
+    let state = PlotState {
         curves,
-        ..Model::default()
+        ..PlotState::default()
     };
     let mut harness = Harness::builder()
         .with_size(vec2(800.0, 600.0))
         .with_context_setup(palette::apply)
         .build_ui_state(
-            |ui, model: &mut Model| {
+            |ui, state: &mut PlotState| {
                 let inputs = ["LON", "LAT", "PED", "COL"].map(String::from);
                 let outputs = ["P", "Q", "R", "NX", "NY", "NZ"].map(String::from);
                 let cell = |k: usize| OverviewCell {
                     pair: Pair::new(k / 4, k % 4),
-                    curves: &model.curves,
+                    curves: &state.curves,
                     constrained: k == 1,
                     selected: k == 4,
                     note: "J 75".to_owned(),
@@ -53,10 +54,10 @@ fn overview_harness(curves: Vec<BodeCurve>) -> Harness<'static, Model> {
                     message: None,
                 };
                 let palette = Palette::from_visuals(ui.visuals());
-                let events = overview_ui(ui, &scene, &mut model.overview, &palette);
-                model.pairs.extend(events);
+                let events = overview_ui(ui, &scene, &mut state.overview, &palette);
+                state.events.extend(events);
             },
-            model,
+            state,
         );
     harness.run();
     harness
@@ -74,7 +75,7 @@ fn a_click_on_a_small_plot_names_its_pair() {
     assert!(
         harness
             .state()
-            .pairs
+            .events
             .contains(&OverviewEvent::PairClicked(Pair::new(4, 2)))
     );
 }
@@ -87,7 +88,7 @@ fn a_small_plot_is_found_by_its_name() {
     assert!(
         harness
             .state()
-            .pairs
+            .events
             .contains(&OverviewEvent::PairClicked(Pair::new(1, 0)))
     );
 }

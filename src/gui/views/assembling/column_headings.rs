@@ -58,7 +58,7 @@ fn possible_units_ui(
     column: usize,
     commands: &mut Vec<Command>,
 ) {
-    let Some(open) = assembly.unsaid.get(file) else {
+    let Some(open) = assembly.missing_units.get(file) else {
         return;
     };
     let Some(open) = open.iter().find(|open| open.column == column) else {

@@ -75,7 +75,7 @@ fn reading_ui(
         return;
     };
     ui.spinner();
-    let megabytes = reading.taken >> 20;
+    let megabytes = reading.read_bytes >> 20;
     let values = if megabytes == 0 {
         String::new()
     } else {

@@ -128,7 +128,7 @@ pub(super) fn caution_remedies(
             Remedy::new(
                 "Show poles",
                 "Show the poles of the model",
-                RecordsCommand::Show(RecordsPage::Order),
+                RecordsCommand::ShowPage(RecordsPage::Order),
             ),
             choose_order(),
         ],
@@ -147,7 +147,7 @@ fn record_caution_remedies(records: &ConditionRecords, caution: &RecordCaution) 
         RecordCaution::UnlikelyUnit { .. } | RecordCaution::Copy { .. } => vec![Remedy::new(
             "Check",
             "Set column and factor on page Columns…",
-            RecordsCommand::Show(RecordsPage::Columns),
+            RecordsCommand::ShowPage(RecordsPage::Columns),
         )],
         _ => Vec::new(),
     }
@@ -331,7 +331,7 @@ fn show_inputs() -> Remedy {
     Remedy::new(
         "Inputs",
         "Show the inputs",
-        RecordsCommand::Show(RecordsPage::Inputs),
+        RecordsCommand::ShowPage(RecordsPage::Inputs),
     )
 }
 

@@ -76,7 +76,7 @@ fn unassigned_ui(ui: &mut Ui, page: Page<'_>, layout: &FitLayout, commands: &mut
     ui.scope_builder(UiBuilder::new().max_rect(button), |ui| {
         ui.vertical_centered(|ui| {
             ui.button("Assign columns")
-                .asks(RecordsCommand::Show(RecordsPage::Columns), commands);
+                .asks(RecordsCommand::ShowPage(RecordsPage::Columns), commands);
         });
     });
 }

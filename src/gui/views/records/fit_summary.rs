@@ -219,7 +219,7 @@ fn use_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
                 let hint =
                     "Replaces the identified models of this condition; can be undone in one step";
                 if let Some(offered) = offered_models_ui(ui, &text, hint) {
-                    commands.push(RecordsCommand::Take(offered).into());
+                    commands.push(RecordsCommand::Adopt(offered).into());
                 }
             }
             let words = if is_taken {
@@ -233,7 +233,7 @@ fn use_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
             if is_taken {
                 ui.small_button("Restore")
                     .on_hover_text("Restores the models of the file; can be undone in one step")
-                    .asks(RecordsCommand::Return, commands);
+                    .asks(RecordsCommand::RestoreFileModels, commands);
             }
         });
     });

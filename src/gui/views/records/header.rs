@@ -50,7 +50,7 @@ fn use_ui(ui: &mut Ui, fits: &[ConditionId], palette: &Palette, commands: &mut V
     }
     let mut entries: Vec<(String, Command)> = Vec::new();
     for offer in OFFERS {
-        let command = RecordsCommand::TakeAll(offer.models);
+        let command = RecordsCommand::AdoptAll(offer.models);
         entries.push((offer.words.to_owned(), command.into()));
     }
     more_ui(ui, "Other models of the fits", entries, commands);
@@ -63,7 +63,7 @@ fn use_ui(ui: &mut Ui, fits: &[ConditionId], palette: &Palette, commands: &mut V
     let text = RichText::new(text).color(palette.on_accent());
     ui.add(Button::new(text).fill(palette.accent))
         .on_hover_text(hint)
-        .asks(RecordsCommand::TakeAll(AdoptionChoice::REFINED), commands);
+        .asks(RecordsCommand::AdoptAll(AdoptionChoice::REFINED), commands);
 }
 
 /// Draws the command that identifies all conditions with records, or only those whose fit is
@@ -105,7 +105,7 @@ fn progress_ui(
     // The status bar may show a Stop for other work at the same time, so this one has its own name.
     named(ui.button("Stop"), Role::Button, "Stop identifying")
         .on_hover_text("Stops identifying; finished fits are kept")
-        .asks(RecordsCommand::Stop, commands);
+        .asks(RecordsCommand::StopIdentifying, commands);
     let mut words = format!("{} of {}", progress.finished, progress.requested);
     if let Some(left_s) = progress.left_s {
         words.push_str(&format!(", {left_s:.0} s left"));

@@ -27,7 +27,7 @@ pub(super) fn stabilisation_chart<'a>(
     let axis = ChartAxis::Frequency(unit);
     let mut chart = Chart::new("Stabilisation diagram: |λ|", axis, across, "order");
     if let Some((job, _)) = &records.found {
-        chart.band = Some(job.request.options.band);
+        chart.band_ends = Some(job.request.options.band);
     }
     for mark in records.marks("order-limit") {
         chart.notes.push((mark, palette.warning));

@@ -111,7 +111,7 @@ pub fn records_pages(state: &State) -> Vec<PageEntry> {
         pages.push(PageEntry {
             words: page.words(),
             is_shown: page == state.records.page,
-            command: RecordsCommand::Show(page).into(),
+            command: RecordsCommand::ShowPage(page).into(),
         });
     }
     pages

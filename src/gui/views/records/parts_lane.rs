@@ -275,7 +275,7 @@ impl Lane<'_> {
         let name = &self.page.records.rows[row].table.name;
         let response = named(response, Role::Button, format!("Part {name}"));
         if response.on_hover_cursor(CursorIcon::PointingHand).clicked() {
-            commands.push(RecordsCommand::Choose(row).into());
+            commands.push(RecordsCommand::ChooseRecord(row).into());
         }
     }
 

@@ -177,7 +177,7 @@ impl RecordRow<'_> {
         self.cautions_ui(ui, rect);
         self.hold_out_ui(ui, rect, commands);
         self.remove_ui(ui, rect, commands);
-        response.asks(RecordsCommand::Choose(self.index), commands);
+        response.asks(RecordsCommand::ChooseRecord(self.index), commands);
     }
 
     fn is_part(&self) -> bool {

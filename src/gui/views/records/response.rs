@@ -19,7 +19,7 @@ use super::page::Page;
 use super::value_range::rounded_range;
 use crate::gui::plot::BodeCurve;
 use crate::gui::plot::chart::{
-    Chart, ChartAxis, ChartBand, ChartLayout, ChartLine, ChartMarks, ChartSpan, DENSE_DASH,
+    Chart, ChartArea, ChartAxis, ChartLayout, ChartLine, ChartMarks, ChartSpan, DENSE_DASH,
 };
 use crate::gui::plot::chart_view::chart_ui;
 use crate::gui::state::records::TimeRole;
@@ -217,7 +217,7 @@ impl ResponseCharts<'_> {
             right_margin: 2.0,
             has_ticks_across: place.has_ticks,
         };
-        chart.band = Some(self.band);
+        chart.band_ends = Some(self.band);
         chart.spans = self.caution_spans();
         chart
     }
@@ -457,7 +457,7 @@ fn add_response(chart: &mut Chart<'_>, drawn: &DrawnResponse, part: BodePart, pa
         .hidden_roles
         .contains(&TimeRole::Identified)
     {
-        chart.bands.push(confidence_band(drawn, part, palette));
+        chart.areas.push(confidence_band(drawn, part, palette));
         let is_refined = !drawn.refined.is_empty();
         let curve = if is_refined {
             &drawn.refined
@@ -472,25 +472,25 @@ fn add_response(chart: &mut Chart<'_>, drawn: &DrawnResponse, part: BodePart, pa
     }
     for interval in &drawn.deviating {
         chart
-            .bands
+            .areas
             .push(interval_mark(drawn, *interval, part, palette.warning));
     }
     for interval in &drawn.unexcited {
         chart
-            .bands
+            .areas
             .push(interval_mark(drawn, *interval, part, palette.dim_text));
     }
 }
 
 /// Returns the 95 % band about the recommended curve.
-fn confidence_band(drawn: &DrawnResponse, part: BodePart, palette: &Palette) -> ChartBand {
+fn confidence_band(drawn: &DrawnResponse, part: BodePart, palette: &Palette) -> ChartArea {
     let mut points = Vec::new();
     for (point, sd) in drawn.recommended.iter().zip(&drawn.recommended_sds) {
         let [omega, value] = point.place(part);
         let half = part.drawn_half_interval(*sd);
         points.push([omega, value - half, value + half]);
     }
-    ChartBand {
+    ChartArea {
         points,
         color: palette.identified.gamma_multiply(0.28),
     }
@@ -506,7 +506,7 @@ fn interval_mark(
     interval: [f64; 2],
     part: BodePart,
     color: Color32,
-) -> ChartBand {
+) -> ChartArea {
     let half = match part {
         BodePart::Magnitude => MARK_DB,
         BodePart::Phase => MARK_DEG,
@@ -518,7 +518,7 @@ fn interval_mark(
             points.push([omega, value - half, value + half]);
         }
     }
-    ChartBand {
+    ChartArea {
         points,
         color: color.gamma_multiply(0.25),
     }

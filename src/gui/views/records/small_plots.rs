@@ -132,5 +132,5 @@ fn plot_ui(
     response
         .on_hover_cursor(CursorIcon::PointingHand)
         .on_hover_text(hint)
-        .asks(RecordsCommand::Show(RecordsPage::Order), commands);
+        .asks(RecordsCommand::ShowPage(RecordsPage::Order), commands);
 }

@@ -91,7 +91,7 @@ fn an_output_of_the_other_sign_is_found_and_turned_to_the_last_digit() {
         panic!("one doubt: {:?}", flipped.doubts)
     };
     assert_eq!(
-        (doubt.convention, doubt.channel, doubt.turns()),
+        (doubt.convention, doubt.channel, doubt.channel_to_reverse()),
         (Convention::Sign, NZ, Some(NZ))
     );
     assert!(
@@ -190,7 +190,7 @@ fn a_unit_that_one_side_has_otherwise_is_found_with_its_factor() {
         };
         // The models of the example agree with flight within a few percent.
         assert!((found / factor).ln().abs() < 0.2, "{found} of {factor}");
-        assert_eq!(doubt.turns(), None, "no sign");
+        assert_eq!(doubt.channel_to_reverse(), None, "no sign");
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! *Rules* say what each model found in a file is: condition, role, channels, units, signs. They
 //! are proposed from the files, corrected by the engineer in a rules file, and overridden by
-//! options.
+//! options. The rules have a row for each model, a *part* is a model with its row.
 
 use std::path::{Path, PathBuf};
 

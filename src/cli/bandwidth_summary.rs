@@ -1,7 +1,7 @@
 //! Printed bandwidths and phase delays, and the reasons why responses have none.
 //!
-//! A *role* is a version of a condition's model: physics, corrected, scheduled or identified.
-//! Bandwidth and phase delay are those of M17.1.
+//! A *role* is a version of a condition's model: physics, corrected, scheduled or identified; a
+//! *finding* is the result for a role. Bandwidth and phase delay are those of M17.1.
 
 use std::collections::BTreeSet;
 
@@ -81,8 +81,8 @@ fn absent_bandwidths(responses: &[ResponseBandwidths]) -> Vec<ConditionMessage> 
         .collect()
 }
 
-/// Returns the reasons for missing phase delays. A reason is omitted if the first result to which
-/// it applies also lacks the bandwidth, for which a reason is given anyway.
+/// Returns the reasons for missing phase delays, except where the bandwidth is missing too: the
+/// reason for that is printed already. The first finding to which a reason applies decides.
 fn absent_delays(responses: &[ResponseBandwidths]) -> Vec<ConditionMessage> {
     responses
         .iter()
@@ -92,6 +92,7 @@ fn absent_delays(responses: &[ResponseBandwidths]) -> Vec<ConditionMessage> {
         .collect()
 }
 
+/// Prints reasons with a label, each once with its conditions.
 fn absent_lines(label: &str, messages: Vec<ConditionMessage>) -> String {
     let mut text = String::new();
     for message in shared_messages(messages) {
@@ -102,7 +103,7 @@ fn absent_lines(label: &str, messages: Vec<ConditionMessage>) -> String {
 
 /// Reason why a bandwidth or phase delay is missing.
 struct AbsentReason<'a> {
-    /// First result to which the reason applies.
+    /// First finding to which the reason applies.
     finding: &'a BandwidthFinding,
     code: &'static str,
     /// Response, roles and reason: "LON → Q (physics, corrected): …".
@@ -115,8 +116,8 @@ impl AbsentReason<'_> {
     }
 }
 
-/// Returns the distinct reasons why a quantity is missing in a response's results. Each names its
-/// roles, unless it applies to all.
+/// Returns the distinct reasons why a quantity, by its name in the file, is missing in a response's
+/// findings. Each names its roles, unless it applies to all.
 fn absent_reasons<'a>(response: &ResponseBandwidths<'a>, quantity: &str) -> Vec<AbsentReason<'a>> {
     let findings = response.findings;
     let reason_of =
@@ -194,6 +195,7 @@ fn level_cell(level: AssessedLevel) -> String {
     }
 }
 
+/// Marks a value that depends on the response above the band.
 fn above_mark(finding: &BandwidthFinding, quantity: &str) -> &'static str {
     if finding.rests_above(quantity) {
         "*"

@@ -1,6 +1,7 @@
 //! Units, factors and signs that options for `gdcm assemble` declare for channels, added to the
 //! rules. The *scope* of a declaration is the set of models to which it applies: all, the physics
-//! or the identified models, or the models of some files.
+//! or the identified models, or the models of some files. A model's *key* names its file, and the
+//! model within it: "c03/roll+5.mat#sys".
 
 use std::collections::BTreeSet;
 

@@ -13,7 +13,7 @@
 //!
 //! Topics are tables of the same log, each with some of the channels and time stamps of its own;
 //! joining makes one record of them. A record is *laid out* when its columns are assigned to
-//! channels.
+//! channels. It is *used* unless it is a copy; its *problems* say why its columns are unclear.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -30,7 +30,9 @@ use super::failure::Failure;
 use super::identify_arguments::RecordArguments;
 use super::option_values::RecordPart;
 use super::progress::ReadingProgress;
-use super::record_parts::{CutRecords, WholeRecord, cut_parts, is_part, part_without_samples};
+use super::record_parts::{
+    CutRecords, WholeRecord, cut_parts, is_requested_part, part_without_samples,
+};
 use super::terminal::{caution, error, note};
 use crate::message_codes::{layout_caution_code, layout_problem_code};
 
@@ -86,12 +88,11 @@ pub(super) fn laid_out_records(
     let units_are_known = rules.all(|rule| !rule.unit.is_empty());
     let mut layouts = RecordLayouts {
         dataset,
-        wish: arguments.time_wish(),
+        time_settings: arguments.time_wish(),
         reported: Reported::default(),
     };
-    // Step 2. Times of a part may count from the first sample, so that the record is laid out here
-    // to find its time column.
-    let tables = with_topics_joined(tables, channels, &layouts.wish);
+    // Step 2.
+    let tables = with_topics_joined(tables, channels, &layouts.time_settings);
     let CutRecords { tables, wholes } = if arguments.part.is_empty() {
         CutRecords {
             tables,
@@ -99,7 +100,7 @@ pub(super) fn laid_out_records(
         }
     } else {
         cut_parts(&tables, &arguments.part, |table| {
-            layouts.lay_out(table.clone(), channels).0.span_s()
+            layouts.span_s(table, channels)
         })?
     };
     // Step 3.
@@ -140,7 +141,8 @@ pub(super) fn laid_out_records(
 /// Assigns record columns to channels, and reports notes, cautions and problems.
 struct RecordLayouts<'a> {
     dataset: Option<&'a Dataset>,
-    wish: TimeSettings,
+    /// Time column or sample rate given on the command line.
+    time_settings: TimeSettings,
     reported: Reported,
 }
 
@@ -164,12 +166,19 @@ impl RecordLayouts<'_> {
         channels: &RecordChannels,
     ) -> (LaidOutRecord, Vec<String>) {
         let Some(dataset) = self.dataset else {
-            return LaidOutRecord::proposed(table, channels, &self.wish);
+            return LaidOutRecord::proposed(table, channels, &self.time_settings);
         };
         let (mut record, notes) =
-            LaidOutRecord::proposed_for_dataset(table, channels, dataset, &self.wish);
+            LaidOutRecord::proposed_for_dataset(table, channels, dataset, &self.time_settings);
         record.used = true;
         (record, notes)
+    }
+
+    /// Returns a record's first and last time \[s\], to which the times of its parts may relate;
+    /// `None` if its columns are unclear. The record is laid out only to find its time column.
+    fn span_s(&self, table: &RecordTable, channels: &RecordChannels) -> Option<[f64; 2]> {
+        let (record, _) = self.lay_out(table.clone(), channels);
+        record.span_s()
     }
 
     /// Assigns all records' columns, and reports notes (for a log, first those of its format),
@@ -282,7 +291,7 @@ fn check_parts(
     for part in parts {
         if !records
             .iter()
-            .any(|record| is_part(&record.table, part, wholes))
+            .any(|record| is_requested_part(&record.table, part, wholes))
         {
             return Err(part_without_samples(part, wholes));
         }

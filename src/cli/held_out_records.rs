@@ -5,7 +5,7 @@ use gdcm_sysid::records::record_table::shortened_list;
 
 use super::failure::Failure;
 use super::option_values::record_part;
-use super::record_parts::{WholeRecord, is_called, is_part};
+use super::record_parts::{WholeRecord, is_called, is_requested_part};
 
 /// Holds out the requested records or parts; `wholes` are the records from which parts were cut. A
 /// name that has the form of a part (`A:B`) holds out the part, and any name also the records that
@@ -29,7 +29,7 @@ pub(super) fn hold_out(
         for record in records.iter_mut() {
             let table = &record.table;
             let is_held_part = match &part {
-                Some(part) => table.part_s.is_some() && is_part(table, part, wholes),
+                Some(part) => table.part_s.is_some() && is_requested_part(table, part, wholes),
                 None => false,
             };
             if is_held_part || is_called(table, name) {

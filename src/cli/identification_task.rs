@@ -67,15 +67,21 @@ impl IdentificationTask {
     }
 
     /// Identifies the models, and reports the progress to `receiver`.
-    pub(super) fn run(
-        &self,
-        receiver: ProgressReceiver<'_>,
-    ) -> Result<Identification, IdentificationError> {
+    ///
+    /// # Errors
+    /// [`Failure::NoModels`] if no model is found; [`Failure::Cancelled`] if the work was stopped.
+    pub(super) fn run(&self, receiver: ProgressReceiver<'_>) -> Result<Identification, Failure> {
         let work = match self.condition {
             Some(id) => format!("identifying condition {id}"),
             None => "identifying".to_owned(),
         };
-        self.request.identify(&Pool, &*receiver.begin(&work))
+        match self.request.identify(&Pool, &*receiver.begin(&work)) {
+            Ok(found) => Ok(found),
+            Err(IdentificationError::Stopped(stopped)) => Err(stopped.into()),
+            Err(why) => Err(Failure::NoModels {
+                reason: format!("no model was identified: {why}"),
+            }),
+        }
     }
 
     /// Returns whether a record with this name is among the task's records.

@@ -1,8 +1,11 @@
 //! Runs the identifications for `gdcm identify` and writes their results: a file for each, and the
 //! dataset that receives the models.
 //!
-//! `gdcm identify` calls [`Identifications::run`] and [`Identifications::finish`]; the library
-//! call, which writes nothing, only [`Identifications::describe`].
+//! 1. [`Identifications::run`] identifies the models of each task; `add_result` puts them into the
+//!    output files and the receiving dataset, with a description ([`Identifications::describe`]).
+//! 2. [`Identifications::finish`] writes the files and prints the results.
+//!
+//! The library call, which writes nothing, uses only [`Identifications::describe`].
 
 use std::mem::take;
 use std::path::{Path, PathBuf};
@@ -15,7 +18,7 @@ use gdcm_model::dataset::condition::ConditionRecord;
 use gdcm_model::message_text::sanitized_path;
 use gdcm_model::number_format::counted;
 use gdcm_study::decisions::adopted_models::AdoptedModels;
-use gdcm_sysid::identification::{CautionNote, Identification, IdentificationError};
+use gdcm_sysid::identification::{CautionNote, Identification};
 use gdcm_sysid::records::RecordChannels;
 use gdcm_words::record_use::input_limit_texts;
 
@@ -42,6 +45,7 @@ pub(super) struct IdentificationBasis<'a> {
 /// Results from the identifications so far, and the output files.
 pub(super) struct Identifications<'a> {
     basis: IdentificationBasis<'a>,
+    /// Dataset that receives the models.
     destination: Option<ReceivingDataset>,
     outputs: OutputSet,
     /// Lines to be printed about the results.
@@ -79,33 +83,34 @@ impl<'a> Identifications<'a> {
             .iter()
             .map(|task| task.output_path(self.basis.arguments))
             .collect();
-        let mut places: Vec<&Path> = files.iter().map(PathBuf::as_path).collect();
-        places.extend(self.destination.iter().map(|place| place.path.as_path()));
-        self.outputs.check(&places)?;
+        let mut paths: Vec<&Path> = files.iter().map(PathBuf::as_path).collect();
+        paths.extend(
+            self.destination
+                .iter()
+                .map(|dataset| dataset.path.as_path()),
+        );
+        self.outputs.check(&paths)?;
         let tables: String = tasks.iter().map(IdentificationTask::table).collect();
         print(&tables)?;
         for (task, file) in tasks.iter().zip(&files) {
             match task.run(ProgressReceiver::Terminal) {
-                Ok(found) => self.take(task, file, &found)?,
-                Err(IdentificationError::Stopped(stopped)) => return Err(stopped.into()),
-                Err(why) if tasks.len() == 1 => {
-                    return Err(Failure::NoModels {
-                        reason: format!("no model was identified: {why}"),
-                    });
+                Ok(found) => self.add_result(task, file, &found)?,
+                Err(failure @ Failure::NoModels { .. }) if tasks.len() > 1 => {
+                    self.cautions.push(ConditionMessage::new(
+                        task.condition,
+                        failure.code(),
+                        failure.to_string(),
+                    ));
                 }
-                Err(why) => self.cautions.push(ConditionMessage::new(
-                    task.condition,
-                    "no-models",
-                    format!("no model was identified: {why}"),
-                )),
+                Err(failure) => return Err(failure),
             }
         }
         Ok(())
     }
 
-    /// Adds a task's result to the output files and to the dataset, if there is one; prints its
-    /// notes, and keeps its cautions and its line for the end.
-    fn take(
+    /// Adds a task's result to the output files and to the receiving dataset, if there is one;
+    /// prints its notes, and keeps its cautions and its line for the end.
+    fn add_result(
         &mut self,
         task: &IdentificationTask,
         file: &Path,
@@ -172,14 +177,17 @@ impl<'a> Identifications<'a> {
         })
     }
 
-    /// Returns a task's cautions, and stores them to be printed at the end. Those about duplicates
-    /// are not stored: they have already been printed.
+    /// Returns a task's cautions, and keeps them to be printed at the end. Those about duplicates
+    /// are not kept: they have already been printed.
     fn cautions_of(
         &mut self,
         task: &IdentificationTask,
         found: &Identification,
     ) -> Vec<CautionNote> {
-        let dataset = self.destination.as_ref().map(|place| &*place.dataset);
+        let dataset = self
+            .destination
+            .as_ref()
+            .map(|receiving| &*receiving.dataset);
         let mut cautions = task.cautions(found, self.basis.channels, dataset);
         for caution in &cautions {
             let message = ConditionMessage::new(task.condition, caution.code, caution.text.clone());

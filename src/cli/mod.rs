@@ -46,6 +46,7 @@ mod receiving_dataset;
 mod record_parts;
 mod record_remedies;
 mod record_table;
+mod recurring_cautions;
 mod report;
 mod requested_channels;
 mod requirements;

@@ -11,7 +11,7 @@ use gdcm_io::output_set::OutputSet;
 use gdcm_model::dataset::{Band, Pair};
 use gdcm_model::message_text::sanitized_path;
 use gdcm_model::number_format::number;
-use gdcm_sysid::identification::{Identification, IdentificationError};
+use gdcm_sysid::identification::Identification;
 use gdcm_sysid::planning::flight_information::{FlightInformation, StandardSweep};
 use gdcm_sysid::planning::flight_plan::{SweepPlan, TABLE_REPEATS};
 use gdcm_sysid::planning::flight_planner::FlightPlanner;
@@ -34,6 +34,7 @@ use super::receiving_dataset::ReceivingDataset;
 use super::requested_channels::{requested_band, requested_channels};
 use super::terminal::{caution_for, print};
 use crate::executor::Pool;
+use crate::message::Message;
 
 /// Identifies models from flight records and prints a plan for each condition.
 ///
@@ -64,51 +65,12 @@ pub(super) fn plan(arguments: &PlanArguments) -> Result<(), Failure> {
     let IdentificationTasks { tasks, unread, .. } =
         identification_tasks(source, destination.as_ref(), &mut channels, band)?;
     // Step 3.
-    let mut plans: Vec<ConditionPlan> = Vec::new();
-    let mut text = String::new();
-    let mut failures: Vec<ConditionMessage> = Vec::new();
-    for task in &tasks {
-        match task.run(ProgressReceiver::Terminal) {
-            Ok(found) => match wanted.plan(task, &found) {
-                Ok(plan) => {
-                    text += &plan_text(&plan, &wanted.channels);
-                    plans.push(plan);
-                }
-                Err(Failure::NoPlan { reason }) if tasks.len() > 1 => {
-                    failures.push(ConditionMessage::new(
-                        task.condition,
-                        "no-plan",
-                        format!("no flight can be planned: {reason}"),
-                    ));
-                }
-                Err(failure) => return Err(failure),
-            },
-            Err(IdentificationError::Stopped(stopped)) => return Err(stopped.into()),
-            Err(why) if tasks.len() == 1 => {
-                return Err(Failure::NoModels {
-                    reason: format!("no model was identified: {why}"),
-                });
-            }
-            Err(why) => failures.push(ConditionMessage::new(
-                task.condition,
-                "no-models",
-                format!("no model was identified: {why}"),
-            )),
-        }
-    }
-    for message in shared_messages(failures) {
-        caution_for(
-            message.message.code,
-            &message.conditions,
-            &message.message.text,
-        );
-    }
-    if plans.is_empty() {
-        return Err(Failure::NoPlan {
-            reason: format!("all {} conditions failed", tasks.len()),
-        });
-    }
+    let plans = condition_plans(&tasks, &wanted)?;
     // Step 4.
+    let mut text = String::new();
+    for plan in &plans {
+        text += &plan_text(plan, &wanted.channels);
+    }
     if let Some(out) = &arguments.out {
         add_flight_plans(&plans, &wanted.channels, out, &mut outputs)?;
         outputs.persist()?;
@@ -122,6 +84,47 @@ pub(super) fn plan(arguments: &PlanArguments) -> Result<(), Failure> {
             paths: listed_paths(&unread),
         })
     }
+}
+
+/// Identifies the models of each task, and plans its flights. A condition without models or without
+/// a plan is a caution, unless it is the only one.
+///
+/// # Errors
+/// No condition has a plan, an option does not suit the records, or the work was stopped.
+fn condition_plans(
+    tasks: &[IdentificationTask],
+    wanted: &WantedFlights<'_>,
+) -> Result<Vec<ConditionPlan>, Failure> {
+    let mut plans = Vec::with_capacity(tasks.len());
+    let mut cautions: Vec<ConditionMessage> = Vec::new();
+    for task in tasks {
+        let plan = task
+            .run(ProgressReceiver::Terminal)
+            .and_then(|found| wanted.plan(task, &found));
+        match plan {
+            Ok(plan) => plans.push(plan),
+            Err(failure @ (Failure::NoModels { .. } | Failure::NoPlan { .. }))
+                if tasks.len() > 1 =>
+            {
+                cautions.push(ConditionMessage::new(
+                    task.condition,
+                    failure.code(),
+                    failure.to_string(),
+                ));
+            }
+            Err(failure) => return Err(failure),
+        }
+    }
+    for shared in shared_messages(cautions) {
+        let Message { code, text } = &shared.message;
+        caution_for(code, &shared.conditions, text);
+    }
+    if plans.is_empty() {
+        return Err(Failure::NoPlan {
+            reason: format!("all {} conditions failed", tasks.len()),
+        });
+    }
+    Ok(plans)
 }
 
 /// The sweeps and targets that the options ask for.
@@ -216,8 +219,9 @@ impl<'a> WantedFlights<'a> {
         })
     }
 
-    /// Returns the failure for sweeps about which nothing can be predicted. If the options give
-    /// their length or band, the reason is that the sweeps have no spectral line in the band.
+    /// Returns the failure for sweeps about which nothing can be predicted: if the options give
+    /// their length or band, they have no spectral line in the band; sweeps as flown always have
+    /// some, so that information is missing.
     fn no_plan(&self) -> Failure {
         if self.arguments.length.is_some() {
             let reason =

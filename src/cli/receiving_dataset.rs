@@ -1,5 +1,5 @@
 //! The dataset that receives identified models (`gdcm identify --into`), and the conditions to
-//! which the records belong.
+//! which the records belong. A record's *guess* is what its name says, such as its condition.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};

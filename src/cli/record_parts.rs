@@ -3,6 +3,9 @@
 //! A record and the parts cut from it have the same source (file and variable within the file),
 //! which differs between records. Cutting keeps each record's time span ([`WholeRecord`]), because
 //! times may count from its first sample.
+//!
+//! On the command line, a record is given by its file, its name, or its name within the file
+//! ([`is_called`]). A part is called like its record, with the times behind: "sweep, 5 to 34 s".
 
 use std::path::Path;
 
@@ -14,6 +17,7 @@ use super::option_values::RecordPart;
 
 /// Parts cut from records, and the records that could not be cut.
 pub(super) struct CutRecords {
+    /// The parts, and the records that could not be cut.
     pub(super) tables: Vec<RecordTable>,
     /// Records from which parts were cut.
     pub(super) wholes: Vec<WholeRecord>,
@@ -109,7 +113,11 @@ impl WholeRecord {
 
 /// Returns whether a table is the requested part; a record with unclear columns, which was not cut,
 /// counts as every part requested from it.
-pub(super) fn is_part(table: &RecordTable, part: &RecordPart, wholes: &[WholeRecord]) -> bool {
+pub(super) fn is_requested_part(
+    table: &RecordTable,
+    part: &RecordPart,
+    wholes: &[WholeRecord],
+) -> bool {
     if let Some(record) = &part.record
         && !is_called(table, record)
         && !is_cut_from(table, record)
@@ -122,28 +130,27 @@ pub(super) fn is_part(table: &RecordTable, part: &RecordPart, wholes: &[WholeRec
     }
 }
 
-/// Returns whether `wanted` identifies a record, by its file, its name, or its name within the
-/// file.
-pub(super) fn is_called(table: &RecordTable, wanted: &str) -> bool {
-    identifies(wanted, &table.name, &table.source)
+/// Returns whether a name given on the command line means this table.
+pub(super) fn is_called(table: &RecordTable, given_name: &str) -> bool {
+    means(given_name, &table.name, &table.source)
 }
 
-/// Returns whether `wanted` identifies the record with this name and source.
-fn identifies(wanted: &str, name: &str, source: &RecordSource) -> bool {
-    let file = Path::new(wanted)
+/// Returns whether a name given on the command line means the record with this name and source.
+fn means(given_name: &str, name: &str, source: &RecordSource) -> bool {
+    let file = Path::new(given_name)
         .file_name()
         .map(|name| name.to_string_lossy().into_owned())
         .unwrap_or_default();
     source.file.rsplit('/').next() == Some(&file)
-        || name == wanted
-        || source.variable.as_deref() == Some(wanted)
+        || name == given_name
+        || source.variable.as_deref() == Some(given_name)
 }
 
-/// Returns whether a table was cut from the record named `wanted`: a part's name is the whole
+/// Returns whether a table was cut from the record with this name: a part's name is the whole
 /// record's name, a comma and the times.
-fn is_cut_from(table: &RecordTable, wanted: &str) -> bool {
-    let rest = table.name.strip_prefix(wanted);
-    table.part_s.is_some() && rest.is_some_and(|rest| rest.starts_with(", "))
+fn is_cut_from(table: &RecordTable, record_name: &str) -> bool {
+    let times = table.name.strip_prefix(record_name);
+    table.part_s.is_some() && times.is_some_and(|times| times.starts_with(", "))
 }
 
 /// Returns the failure for a part without samples; it lists the records' time spans.
@@ -170,7 +177,7 @@ fn listed_spans(part: &RecordPart, wholes: &[WholeRecord]) -> String {
     let mut spans: Vec<String> = Vec::new();
     for whole in wholes {
         let is_wanted = match &part.record {
-            Some(record) => identifies(record, &whole.name, &whole.source),
+            Some(record) => means(record, &whole.name, &whole.source),
             None => true,
         };
         if is_wanted {

@@ -66,10 +66,10 @@ pub fn summary_text(summary: &AssessmentSummary, dataset: &Dataset) -> String {
     )
 }
 
-/// Compares the held-out conditions' assessment with the other conditions': "held out (3, 8):
+/// Compares the assessment of the held-out conditions with that of the others: "held out (3, 8):
 /// better in 9 of 10 responses, mean ΔJ −12.3; the others: better in 40 of 45 responses, mean ΔJ
 /// −15.0". `None` where no condition is held out.
-pub fn held_out_verdict(analysis: &Analysis, choice: AssessmentChoice) -> Option<String> {
+pub fn held_out_verdict(analysis: &Analysis, assessment: AssessmentChoice) -> Option<String> {
     let study = &analysis.study;
     let held_out: Vec<String> = study
         .dataset
@@ -80,7 +80,7 @@ pub fn held_out_verdict(analysis: &Analysis, choice: AssessmentChoice) -> Option
     if held_out.is_empty() {
         return None;
     }
-    let table = AssessmentTable::assess(analysis, choice);
+    let table = AssessmentTable::assess(analysis, assessment);
     let of_held_out = change_words(analysis, &table, |id| study.choice(id).held_out);
     let of_others = change_words(analysis, &table, |id| !study.choice(id).held_out);
     Some(format!(
@@ -96,13 +96,13 @@ fn change_words(
     table: &AssessmentTable,
     is_selected: impl Fn(ConditionId) -> bool,
 ) -> String {
-    let measuring = analysis.study.dataset.measuring_pairs();
+    let measuring_pairs = analysis.study.dataset.measuring_pairs();
     let mut changes = Vec::new();
     for assessed in &table.conditions {
         if !is_selected(assessed.condition) {
             continue;
         }
-        for pair in measuring.marked() {
+        for pair in measuring_pairs.marked() {
             if let Some(change) = assessed.changes[pair] {
                 changes.push(change.total());
             }

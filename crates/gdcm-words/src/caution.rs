@@ -11,12 +11,12 @@ use gdcm_study::results::caution::{Caution, GainOutOfRange, NotFinite, USUAL_GAI
 /// Clause on the range in which gains can be computed.
 const GAIN_RANGE: &str = "the computable range is 1e-50 to 1e50";
 
-/// Clause that explains "numerically zero" (M6a).
-const NOTHING: &str = "over the band, below 1e-6 of the largest response of the same output and \
-                       of the same input";
+/// Clause that explains which responses count as numerically zero (M6a).
+const NUMERICALLY_ZERO: &str = "over the band, below 1e-6 of the largest response of the same \
+                                output and of the same input";
 
 /// Maximum number of models or responses that are listed by name.
-const LISTED: usize = 3;
+const MOST_LISTED: usize = 3;
 
 /// Returns why a condition has no result; if nothing can be compared, with the cautions that
 /// explain it.
@@ -38,7 +38,25 @@ pub fn caution_text(caution: &Caution, pair_name: impl Fn(Pair) -> String) -> St
             format!("{} is not held: {}", pair_name(*pair), undefined_text(*why))
         }
         Caution::NoSuggestions(error) => error.to_string(),
-        Caution::SetAside { .. } => set_aside_text(caution, &pair_name),
+        Caution::SetAside {
+            model,
+            lacks,
+            zero,
+            why,
+            pinned,
+        } => {
+            let missing = names(lacks, &pair_name);
+            let reason = lacking_reason(lacks, zero, why.as_ref(), &pair_name);
+            let pin = if *pinned {
+                "; although it was chosen as representative, it is not used"
+            } else {
+                ""
+            };
+            format!(
+                "{model} is set aside: it has no {missing}, which another model of its bundle has \
+                ({reason}){pin}"
+            )
+        }
         Caution::NotFinite {
             model,
             responses,
@@ -60,7 +78,7 @@ pub fn caution_text(caution: &Caution, pair_name: impl Fn(Pair) -> String) -> St
         } => gains_out_of_range_text(physics, identified, responses, &pair_name),
         Caution::NumericallyZero { model, responses } => format!(
             "{model}: numerically zero responses are treated as zero and have no G and no D: {} \
-            ({NOTHING})",
+            ({NUMERICALLY_ZERO})",
             names(responses, &pair_name)
         ),
         Caution::NotCoherent {
@@ -131,23 +149,16 @@ fn names(pairs: &[Pair], pair_name: &impl Fn(Pair) -> String) -> String {
     names.join(", ")
 }
 
-/// Describes a model that is set aside, because it lacks responses that another model in its bundle
-/// has, and why it lacks them; empty for any other caution.
-///
-/// Among the missing responses `lacks`, those in `zero` are zero at every frequency with a value.
-/// `why` is the reason why others are not finite; if it is `None`, all others are zero somewhere.
-fn set_aside_text(caution: &Caution, pair_name: &impl Fn(Pair) -> String) -> String {
-    let Caution::SetAside {
-        model,
-        lacks,
-        zero,
-        why,
-        pinned,
-    } = caution
-    else {
-        return String::new();
-    };
-    let reason = match why {
+/// Returns why a model lacks the responses `lacks`, which another model in its bundle has. Those in
+/// `zero` are zero at every frequency with a value; `not_finite` is the reason why others are not
+/// finite. If it is `None`, all others are zero somewhere.
+fn lacking_reason(
+    lacks: &[Pair],
+    zero: &[Pair],
+    not_finite: Option<&NotFinite>,
+    pair_name: &impl Fn(Pair) -> String,
+) -> String {
+    match not_finite {
         None if zero == lacks => "zero over the whole band".to_owned(),
         None => "zero somewhere in the band".to_owned(),
         Some(why) if zero.is_empty() => not_finite_text(why),
@@ -156,16 +167,7 @@ fn set_aside_text(caution: &Caution, pair_name: &impl Fn(Pair) -> String) -> Str
             names(zero, pair_name),
             not_finite_text(why)
         ),
-    };
-    let pin = if *pinned {
-        "; although it was chosen as representative, it is not used"
-    } else {
-        ""
-    };
-    format!(
-        "{model} is set aside: it has no {}, which another model of its bundle has ({reason}){pin}",
-        names(lacks, pair_name)
-    )
+    }
 }
 
 /// Describes gains between two models that are outside the computable range.
@@ -215,7 +217,7 @@ pub fn undefined_text(why: Undefined) -> String {
                 .to_owned()
         }
         Undefined::NumericallyZero(bundle) => {
-            format!("the response is numerically zero in the {bundle} model: {NOTHING}")
+            format!("the response is numerically zero in the {bundle} model: {NUMERICALLY_ZERO}")
         }
     }
 }
@@ -252,8 +254,8 @@ fn six_decimals(omega: f64) -> f64 {
 
 /// Joins names: "nominal, roll+5, roll-5 and 6 more".
 fn first_names(names: &[String]) -> String {
-    let listed = names[..names.len().min(LISTED)].join(", ");
-    match names.len().saturating_sub(LISTED) {
+    let listed = names[..names.len().min(MOST_LISTED)].join(", ");
+    match names.len().saturating_sub(MOST_LISTED) {
         0 => listed,
         rest => format!("{listed} and {rest} more"),
     }
@@ -264,10 +266,10 @@ fn first_names(names: &[String]) -> String {
 fn left_out_words(left_out: &[(Pair, usize)], pair_name: &impl Fn(Pair) -> String) -> String {
     let mut parts: Vec<String> = left_out
         .iter()
-        .take(LISTED)
+        .take(MOST_LISTED)
         .map(|(pair, count)| format!("{count} in {}", pair_name(*pair)))
         .collect();
-    let rest = left_out.len().saturating_sub(LISTED);
+    let rest = left_out.len().saturating_sub(MOST_LISTED);
     if rest > 0 {
         parts.push(format!("and some in {}", counted(rest, "more response")));
     }

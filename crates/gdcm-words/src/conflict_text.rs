@@ -1,14 +1,18 @@
 //! Sentences about constrained responses whose gain or delay cannot be reached, the conflicts that
 //! cause this, and the remedies. The facts are in [`Unmatched`], [`ConflictKind`] and [`Remedy`].
 //!
-//! A response is *held* if it is constrained: the product of its channels' gains k (the sum of
-//! their delays τ) must equal its G (its D). In [`Unmatched`], `delta` is this wanted value, `target`
-//! the nearest feasible one, at which the response is held instead, and `excess` how much `target`
-//! exceeds `delta`: positive for too much gain or delay. Constrained responses that share channels can form a
-//! *loop*, in which each wanted value follows from the others. Lead filters are limited by their greatest
-//! gain `R_max` and the factor `n` of their lag (M15.3). `told_apart` formats two numbers with
-//! enough digits to distinguish them, `telling` a small one with more digits, so that it differs
-//! from 0.
+//! A response is *held* if it is constrained: the product of its channels' gains k must equal its
+//! G, the sum of their delays τ its D. Held responses may *conflict* with the bounds or with each
+//! other; those that share channels can form a *loop*, in which the value of each follows from the
+//! others. They are then held at the nearest feasible values.
+//!
+//! | field | meaning |
+//! |---|---|
+//! | `delta`, `target` | a response's G or D; the nearest feasible value, at which it is held |
+//! | `excess` | how much `target` exceeds `delta` \[dB or s\], negative if it is less |
+//! | `entries` | the held responses in a conflict |
+//! | `asked` | the product, ratio, sum or difference of channel values that they require |
+//! | `upper`, `lower` | a bound on all channel values with which they could be held |
 
 use gdcm_method::correction::channels::{pair_name, pair_names};
 use gdcm_method::correction::conflict::{Conflict, ConflictKind};
@@ -83,18 +87,20 @@ pub fn miss_text(
 }
 
 fn gain_miss_text(miss: &Unmatched, pair: &str) -> String {
+    // With enough digits to distinguish the two numbers.
     let (target, delta) = told_apart(miss.target, miss.delta, 3);
     let sign = if miss.excess > 0.0 { "+" } else { "" };
+    // With enough digits to distinguish the number from 0.
     let excess = with_minus_sign(&telling(miss.excess, 1));
     format!("{pair} is held at a gain of {target} instead of {delta} ({sign}{excess} dB).")
 }
 
 fn lead_miss_text(miss: &Unmatched, pair: &str, omega_top: f64) -> String {
     let (target, delta) = told_apart(s_to_ms(-miss.target), s_to_ms(-miss.delta), 1);
-    let left = telling(miss.phase_left_deg(omega_top).abs(), 0);
+    let phase_error_deg = telling(miss.phase_left_deg(omega_top).abs(), 0);
     format!(
         "{pair} gets {target} of the {delta} ms of lead that it needs; a phase error of \
-        {left}° remains at {omega_top} rad/s."
+        {phase_error_deg}° remains at {omega_top} rad/s."
     )
 }
 
@@ -111,8 +117,8 @@ fn delay_miss_text(miss: &Unmatched, pair: &str, omega_top: f64) -> String {
     } else {
         format!("{pair} lacks {size_ms} ms of delay")
     };
-    let left = telling(miss.phase_left_deg(omega_top).abs(), 0);
-    format!("{why}; a phase error of {left}° remains at {omega_top} rad/s.")
+    let phase_error_deg = telling(miss.phase_left_deg(omega_top).abs(), 0);
+    format!("{why}; a phase error of {phase_error_deg}° remains at {omega_top} rad/s.")
 }
 
 /// Names the values that are compared around a loop.
@@ -286,12 +292,12 @@ impl ConflictText<'_> {
     fn ratio_limit(&self, greater: Channel, lesser: Channel, asked: f64) -> String {
         let greater = self.symbol(greater);
         let lesser = self.symbol(lesser);
-        let low = self.conflict.bounds.lower;
-        let high = self.conflict.bounds.upper;
-        let (most, asked) = told_apart(high / low, asked, 3);
+        let lower_bound = self.conflict.bounds.lower;
+        let upper_bound = self.conflict.bounds.upper;
+        let (most, asked) = told_apart(upper_bound / lower_bound, asked, 3);
         format!(
-            "with {greater} ≤ {high:.3} and {lesser} ≥ {low:.3} their ratio is at most {most}, \
-            but {asked} is required"
+            "with {greater} ≤ {upper_bound:.3} and {lesser} ≥ {lower_bound:.3} their ratio is at \
+            most {most}, but {asked} is required"
         )
     }
 
@@ -306,20 +312,20 @@ impl ConflictText<'_> {
     ) -> String {
         let greater = self.symbol(greater);
         let lesser = self.symbol(lesser);
-        let low = self.conflict.bounds.lower;
-        let high = self.conflict.bounds.upper;
+        let lower_bound = self.conflict.bounds.lower;
+        let upper_bound = self.conflict.bounds.upper;
         if self.conflict.quantity == Quantity::SignedDelay {
-            let (most, asked) = limit_and_asked_ms(high - low, asked);
+            let (most, asked) = limit_and_asked_ms(upper_bound - lower_bound, asked);
             return format!(
                 "{greater} cannot exceed {lesser} by {asked} ms: with at most {} ms of lead and \
                 {} ms of delay in each channel, the difference is at most {most} ms; set the \
                 upper bound to {upper} s, {}, or",
-                milliseconds(-low),
-                milliseconds(high),
+                milliseconds(-lower_bound),
+                milliseconds(upper_bound),
                 Self::MORE_LEAD
             );
         }
-        let (most, asked) = limit_and_asked_ms(high, asked);
+        let (most, asked) = limit_and_asked_ms(upper_bound, asked);
         format!(
             "{greater} cannot exceed {lesser} by {asked} ms with delays ≤ {most} ms; set the \
             upper bound to {upper} s or"

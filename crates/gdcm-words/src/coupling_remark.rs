@@ -182,6 +182,8 @@ fn mixing_words(dataset: &Dataset, mixing: &MixingShare) -> String {
 
 /// Describes a feedback entry: "PED follows NY by 1.2 % per m/s², up to 5.0 % of the movement of PED
 /// at 2.1 rad/s: directional stiffness that the physics model does not represent correctly".
+///
+/// The pilot moves the input `moved`, which causes the output and so the feedback to `input`.
 fn feedback_words(dataset: &Dataset, feedback: &FeedbackShare, meaning: FeedbackMeaning) -> String {
     let input = &dataset.inputs()[feedback.input];
     let output = &dataset.outputs()[feedback.output];
@@ -281,24 +283,24 @@ fn percent(share: f64) -> String {
 /// Locates unstable poles, grouped by condition: "within the band, condition 4, slow at 2
 /// rad/s; condition 1, 8 models at 0.143 to 0.149 rad/s".
 fn unstable_places(poles: &[UnstablePole]) -> String {
-    let mut in_band: BTreeMap<ConditionId, Vec<&UnstablePole>> = BTreeMap::new();
-    let mut beyond: BTreeMap<ConditionId, Vec<&UnstablePole>> = BTreeMap::new();
+    let mut inside_band: BTreeMap<ConditionId, Vec<&UnstablePole>> = BTreeMap::new();
+    let mut outside_band: BTreeMap<ConditionId, Vec<&UnstablePole>> = BTreeMap::new();
     for pole in poles {
-        let places = if pole.is_in_band {
-            &mut in_band
+        let by_condition = if pole.is_in_band {
+            &mut inside_band
         } else {
-            &mut beyond
+            &mut outside_band
         };
-        places.entry(pole.condition).or_default().push(pole);
+        by_condition.entry(pole.condition).or_default().push(pole);
     }
     let mut places = Vec::new();
-    for (condition, poles) in &in_band {
+    for (condition, poles) in &inside_band {
         places.push(format!(
             "within the band, {}",
             unstable_place(*condition, poles)
         ));
     }
-    for (condition, poles) in &beyond {
+    for (condition, poles) in &outside_band {
         places.push(unstable_place(*condition, poles));
     }
     places.join("; ")

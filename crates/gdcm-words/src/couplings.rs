@@ -1,7 +1,10 @@
 //! Tables of couplings, their costs and their poles (M16.4).
 //!
 //! Couplings are a mixing of the inputs and a feedback from outputs to inputs, fitted to all
-//! conditions (M16). *Others* are the off-axis responses. J is the mismatch cost (M4).
+//! conditions (M16). *Others* are the off-axis responses. J is the mismatch cost (M4), without a
+//! correction (*uncorrected*), with each condition's *own* gains and delays, with those from the
+//! schedule over airspeed (*scheduled*), or with couplings and schedule fitted without the
+//! condition (*left out*).
 
 use nalgebra::{Complex, DMatrix};
 
@@ -77,7 +80,7 @@ fn cost_cells(name: &str, cost: CorrectionCost) -> [String; 5] {
 pub fn coupling_matrix_tables(assessment: &CouplingsAssessment, dataset: &Dataset) -> Vec<Table> {
     let airspeed_kt = assessment.mean_airspeed_kt();
     let (inputs, outputs) = dataset.input_and_output_names();
-    let bars = if assessment.left_out_fits.is_empty() {
+    let bar_words = if assessment.left_out_fits.is_empty() {
         String::new()
     } else {
         format!(
@@ -86,7 +89,7 @@ pub fn coupling_matrix_tables(assessment: &CouplingsAssessment, dataset: &Datase
         )
     };
     let title = format!(
-        "Mixing at {} kt: share of each input (column) that an input (row) receives{bars}",
+        "Mixing at {} kt: share of each input (column) that an input (row) receives{bar_words}",
         telling(airspeed_kt, 0)
     );
     let mixing = assessment.mixing(airspeed_kt);
@@ -97,7 +100,7 @@ pub fn coupling_matrix_tables(assessment: &CouplingsAssessment, dataset: &Datase
         let from = with_units(&outputs, dataset.outputs());
         let title = format!(
             "Feedback: units of an input (row) per unit of an output \
-            (column){bars}"
+            (column){bar_words}"
         );
         tables.push(matrix_table(title, &to, &from, &feedback));
     }

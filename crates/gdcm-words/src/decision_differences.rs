@@ -129,22 +129,22 @@ fn sign_differences(before: &Study, after: &Study) -> Vec<DecisionDifference> {
 
 /// Lists differences in decisions about physics parameters (M18).
 fn parameter_differences(before: &Study, after: &Study) -> Vec<DecisionDifference> {
-    let [was, is] = [before, after].map(|study| &study.settings.physics_parameters);
+    let [old, new] = [before, after].map(|study| &study.settings.physics_parameters);
     let mut names: BTreeSet<&String> = BTreeSet::new();
-    for settings in [was, is] {
+    for settings in [old, new] {
         names.extend(settings.by_hand.keys());
         names.extend(&settings.off);
         names.extend(settings.plausible_sd.keys());
     }
     let mut differences = Vec::new();
     for name in names {
-        let [before, after] = [was, is].map(|settings| parameter_words(settings, name));
+        let [before, after] = [old, new].map(|settings| parameter_words(settings, name));
         if before != after {
             differences.push(DecisionDifference::new(name.clone(), before, after));
         }
     }
-    if was.gain_sd != is.gain_sd || was.delay_sd_s != is.delay_sd_s || was.points != is.points {
-        let [before, after] = [was, is].map(|settings| {
+    if old.gain_sd != new.gain_sd || old.delay_sd_s != new.delay_sd_s || old.points != new.points {
+        let [before, after] = [old, new].map(|settings| {
             format!(
                 "prior of gains ± {}, prior of delays ± {} ms, {} frequencies",
                 number(settings.gain_sd),
@@ -199,12 +199,12 @@ fn condition_differences(
         yes: "held out",
         no: "not held out",
     };
-    let was = before.choice(id);
-    let is = after.choice(id);
+    let old = before.choice(id);
+    let new = after.choice(id);
     let mut differences = Vec::new();
     for (words, before, after) in [
-        (scheduled, was.scheduled, is.scheduled),
-        (held_out, was.held_out, is.held_out),
+        (scheduled, old.scheduled, new.scheduled),
+        (held_out, old.held_out, new.held_out),
     ] {
         if before != after {
             differences.push(DecisionDifference::new(
@@ -218,8 +218,8 @@ fn condition_differences(
         differences.extend(bundle_differences(
             id,
             kind,
-            was.bundle(kind),
-            is.bundle(kind),
+            old.bundle(kind),
+            new.bundle(kind),
         ));
     }
     differences

@@ -16,8 +16,14 @@ use gdcm_sysid::planning::sweep_advice::SweepAdvice;
 
 use crate::table::Table;
 
-/// Half-width above which an interval only says that the response is not identified \[dB\].
-const UNKNOWN_DB: f64 = 20.0;
+/// Half-width \[dB\] above which an interval only says that the response is not identified: a
+/// factor of ten.
+const NOT_IDENTIFIED_DB: f64 = 20.0;
+
+/// Decimals of intervals in advice \[dB\].
+const ADVICE_DECIMALS: usize = 1;
+/// Decimals of intervals beside a target \[dB\].
+const TARGET_DECIMALS: usize = 2;
 
 /// Names and units of the channels, for sentences about planned flights.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -99,31 +105,31 @@ pub fn sweep_plan_table(plan: &SweepPlan, channels: &PlannedChannels) -> Table {
     for response in &plan.responses {
         let mut cells = vec![
             channels.response(response.pair),
-            half_width(response.now.half_db),
+            interval_cell(response.now.half_db),
         ];
         for interval in &response.after {
-            cells.push(half_width(interval.half_db));
+            cells.push(interval_cell(interval.half_db));
         }
         table.row(cells);
     }
     table
 }
 
-/// Returns an interval: `± 0.52`, or `not identified` if it is too wide to mean anything.
-fn half_width(half_db: f64) -> String {
-    if half_db > UNKNOWN_DB {
+/// Formats an interval for a table: `± 0.52`, or `not identified`.
+fn interval_cell(half_db: f64) -> String {
+    if half_db > NOT_IDENTIFIED_DB {
         "not identified".to_owned()
     } else {
         format!("± {}", telling(half_db, 2))
     }
 }
 
-/// Returns an interval in a sentence: `± 0.7 dB`, or `more than ± 20 dB`.
-fn interval_text(half_db: f64) -> String {
-    if half_db > UNKNOWN_DB {
-        format!("more than ± {UNKNOWN_DB:.0} dB")
+/// Formats an interval for a sentence, with this many decimals: `± 0.7 dB`, or `more than ± 20 dB`.
+fn interval_text(half_db: f64, decimals: usize) -> String {
+    if half_db > NOT_IDENTIFIED_DB {
+        format!("more than ± {NOT_IDENTIFIED_DB:.0} dB")
     } else {
-        format!("± {} dB", telling(half_db, 1))
+        format!("± {} dB", telling(half_db, decimals))
     }
 }
 
@@ -162,8 +168,8 @@ pub fn advice_text(advice: &SweepAdvice, channels: &PlannedChannels) -> String {
     };
     let sweeps = more_sweeps(sweep, sweep.repeats, channels);
     let response = channels.response(advice.pair);
-    let now = interval_text(advice.now.half_db);
-    let then = interval_text(advice.then.half_db);
+    let now = interval_text(advice.now.half_db, ADVICE_DECIMALS);
+    let then = interval_text(advice.then.half_db, ADVICE_DECIMALS);
     let omega = significant(advice.omega);
     if advice.is_enough {
         let verb = if sweep.repeats == 1 {
@@ -220,7 +226,7 @@ pub fn target_lines(plan: &TargetPlan, channels: &PlannedChannels) -> Vec<String
     };
     let sweep = &plan.sweep.sweep;
     let input = sweep.input;
-    let now = interval_text_fine(plan.now.half_db);
+    let now = interval_text(plan.now.half_db, TARGET_DECIMALS);
     let mut lines = vec![format!("{wanted}; now {now}. Alternatives:")];
     lines.push(need_line(&ways.repeats, |repeats| {
         more_sweeps(sweep, repeats, channels)
@@ -250,19 +256,10 @@ pub fn target_lines(plan: &TargetPlan, channels: &PlannedChannels) -> Vec<String
         lines.push(format!(
             "no number of such flights is enough: gusts and noise fed back into the inputs leave \
             {}",
-            interval_text_fine(plan.limit.half_db)
+            interval_text(plan.limit.half_db, TARGET_DECIMALS)
         ));
     }
     lines
-}
-
-/// Returns an interval as [`interval_text`], but with two decimals: `± 0.52 dB`.
-fn interval_text_fine(half_db: f64) -> String {
-    if half_db > UNKNOWN_DB {
-        interval_text(half_db)
-    } else {
-        format!("± {} dB", telling(half_db, 2))
-    }
 }
 
 /// Returns a line on one way to reach the target interval: the flights needed, in the words of
@@ -271,12 +268,16 @@ fn interval_text_fine(half_db: f64) -> String {
 fn need_line<T: Copy>(need: &Need<T>, describe: impl Fn(T) -> String) -> String {
     match *need {
         Need::Least { amount, half_db } => {
-            format!("{}: {}", describe(amount), interval_text_fine(half_db))
+            format!(
+                "{}: {}",
+                describe(amount),
+                interval_text(half_db, TARGET_DECIMALS)
+            )
         }
         Need::NotWithin { most, half_db } => format!(
             "not enough: {} ({})",
             describe(most),
-            interval_text_fine(half_db)
+            interval_text(half_db, TARGET_DECIMALS)
         ),
     }
 }

@@ -2,7 +2,8 @@
 //!
 //! χ²/dof is the mean squared residual relative to the noise, 1 if the model explains the record;
 //! the partial coherence of an input is the share that it explains of what the other inputs leave
-//! of an output (M14.2).
+//! of an output (M14.2). The *contrast* F says how far a record wants another model than the other
+//! records (M14.16).
 
 use gdcm_model::number_format::{counted, decimals, significant};
 use gdcm_model::simulation::Signal;
@@ -204,9 +205,9 @@ fn short_record_caution(caution: &RecordCaution) -> ShortCaution {
             format!("{} stood still", names_text(signals)),
             format!("{record}, {seconds:.1} s"),
         ),
-        RecordCaution::Coarse { signal, steps } => ShortCaution::new(
+        RecordCaution::Coarse { signal, step_sd } => ShortCaution::new(
             format!("{signal} in coarse steps"),
-            format!("{steps:.1} standard deviations"),
+            format!("{step_sd:.1} standard deviations"),
         ),
         RecordCaution::Copy { copy, of } => ShortCaution::new(
             format!("{copy} is a copy of {of}"),

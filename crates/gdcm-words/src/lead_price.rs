@@ -1,12 +1,13 @@
 //! Sentences about the price of lead filters: the frequency above which the corrected model is
-//! invalid, and the gain that the filters add above the band (M15.6).
+//! invalid, which is the upper end of the band, and the gain that the filters add at ten times this
+//! frequency (M15.6).
 
 use gdcm_method::correction::LeadPrice;
 use gdcm_model::dataset::Pair;
 use gdcm_model::number_format::{signed, six_digits};
 
 /// Gain \[dB\] below which the displayed value, rounded to 0.1 dB, is zero.
-const NOTHING_DB: f64 = 0.05;
+const ROUNDS_TO_ZERO_DB: f64 = 0.05;
 
 /// Describes the frequency limit: "not valid above 12 rad/s".
 pub fn limit_text(price: &LeadPrice) -> String {
@@ -19,7 +20,7 @@ pub fn limit_text(price: &LeadPrice) -> String {
 pub fn price_text(price: &LeadPrice, inputs: &[String], outputs: &[String]) -> String {
     let mut gains = Vec::new();
     for (channel, &gain_db) in price.gains_db.iter() {
-        if gain_db > NOTHING_DB {
+        if gain_db > ROUNDS_TO_ZERO_DB {
             let name = channel.name(inputs, outputs);
             gains.push(format!("{} dB on {name}", signed(gain_db, 1)));
         }
@@ -39,7 +40,7 @@ pub fn price_text(price: &LeadPrice, inputs: &[String], outputs: &[String]) -> S
 /// Describes the gain added to a response: "+18.9 dB at 120 rad/s"; `None` if it rounds to zero.
 pub fn pair_price_text(price: &LeadPrice, pair: Pair) -> Option<String> {
     let gain_db = price.of_pair_db(pair);
-    if gain_db > NOTHING_DB {
+    if gain_db > ROUNDS_TO_ZERO_DB {
         let above_rad_s = six_digits(price.above_rad_s());
         Some(format!("{} dB at {above_rad_s} rad/s", signed(gain_db, 1)))
     } else {

@@ -1,8 +1,9 @@
 //! Sentences about lead filters: the lead that each response needs, the filters, and the checks to
 //! make before they are used (M15).
 //!
-//! A negative delay is a lead, realised by a filter that acts as a faster servo. Its *price* is the
-//! gain that it adds above the band, where the corrected model is not valid.
+//! A channel's signed delay is `tau`: a negative one is a lead, realised by a filter that acts as a
+//! faster servo. A response gets the sum of the signed delays of its two channels. The *price* of
+//! a filter is the gain that it adds above the band, where the corrected model is not valid.
 
 use gdcm_method::correction::{Channel, LeadPrice};
 use gdcm_method::uncertainty::Scalar;
@@ -71,35 +72,38 @@ fn wanted_lead_words(
     let compensated = result.compensated.as_ref()?;
     let wanted_s = result.wanted_delay_s(pair)?;
     let [output, input] = Channel::of_pair(pair);
-    let part = |channel: Channel| {
-        let tau_s = compensated.leads.taus_s[channel];
-        let is_opposite = tau_s != 0.0 && (tau_s > 0.0) != (wanted_s > 0.0);
-        let opposite = if !is_opposite {
-            ""
-        } else if tau_s > 0.0 {
-            " of delay"
-        } else {
-            " of lead"
-        };
-        format!(
-            "{} ms{opposite} at {}",
-            whole_ms(tau_s),
-            channel.name_in(&study.dataset)
-        )
-    };
+    let contributions = [output, input].map(|channel| {
+        let words = contribution_words(compensated.leads.taus_s[channel], wanted_s);
+        format!("{words} at {}", channel.name_in(&study.dataset))
+    });
     let mut text = format!(
-        "{} needs {}{} ms of {} over the band: {}, {}",
+        "{} needs {}{} ms of {} over the band: {}",
         study.dataset.pair_name(pair),
         whole_ms(wanted_s),
         half_width_words(result, uncertainty, pair).unwrap_or_default(),
-        if wanted_s < 0.0 { "lead" } else { "delay" },
-        part(output),
-        part(input)
+        lead_or_delay(wanted_s),
+        contributions.join(", ")
     );
     if let Some(words) = price.and_then(|price| pair_price_text(price, pair)) {
         text.push_str(&format!("; {words}"));
     }
     Some(text)
+}
+
+/// Formats a channel's signed delay as a contribution to the wanted one: "41 ms"; if one is a lead
+/// and the other a delay, "5 ms of delay".
+fn contribution_words(tau_s: f64, wanted_s: f64) -> String {
+    let size = whole_ms(tau_s);
+    if tau_s != 0.0 && (tau_s > 0.0) != (wanted_s > 0.0) {
+        format!("{size} ms of {}", lead_or_delay(tau_s))
+    } else {
+        format!("{size} ms")
+    }
+}
+
+/// Names a signed delay, which is a lead if negative.
+fn lead_or_delay(tau_s: f64) -> &'static str {
+    if tau_s < 0.0 { "lead" } else { "delay" }
 }
 
 /// Formats a delay's absolute value in whole milliseconds.

@@ -6,31 +6,32 @@
 //! | term | meaning |
 //! |---|---|
 //! | run | physics model linearised with one parameter changed |
-//! | base | physics model at the same trim as a run, with the parameter nominal |
 //! | rerun | physics model linearised with several parameters changed, to check the prediction |
 //! | step | position in the stepwise list, which adds the parameter that explains most next |
 //! | learned | share of a parameter's prior variance that the data remove |
 //! | imitated by channels | share of a parameter's effect that channel gains and delays can explain |
-//! | pull | change in a parameter's value if a condition is left out of the fit |
 
+mod diagnosis_cautions;
 mod left_out_runs;
+mod parameter_change;
 mod rerun;
 
-use gdcm_method::physics::diagnosis::NOTABLE_MISFIT;
-use gdcm_method::physics::identifiability::WeakDirection;
 use gdcm_method::physics::intervals::LEAST_CONDITIONS;
 use gdcm_method::physics::verdict::LEAST_EXPLAINED;
-use gdcm_method::physics::{OfferedParameter, Verdict, WhyNotNamed};
-use gdcm_model::number_format::{counted, decimals, signed, six_digits, with_minus_sign};
+use gdcm_method::physics::{Verdict, WhyNotNamed};
+use gdcm_model::number_format::{counted, decimals, signed};
 use gdcm_model::units::number;
-use gdcm_study::results::applied_physics::{AppliedPhysics, AppliedValue};
 use gdcm_study::results::physics_assessment::PhysicsAssessment;
 use gdcm_study::results::physics_findings::{DiagnosedParameter, PhysicsFindings};
 
 use crate::couplings::cost_table;
 use crate::table::Table;
 
+use parameter_change::{half_width_decimals, unit_text};
+
+pub use diagnosis_cautions::{diagnosis_cautions, pull_lines};
 pub use left_out_runs::left_out_lines;
+pub use parameter_change::{applied_value_list, applied_value_text, change_text, paste_block};
 pub use rerun::rerun_text;
 
 /// Sentence displayed beside every verdict.
@@ -40,70 +41,6 @@ pub const LIKE_EFFECT: &str =
 /// Displayed beside error bars where parameters are moved.
 pub const BARS_KEEP_VALUES: &str =
     "error bars hold these values fixed: the uncertainty of the values is not included";
-
-/// Maximum number of listed pulls: changes in a value if a condition is left out.
-const LISTED_PULLS: usize = 3;
-
-/// Formats a change with its half-width in the parameter's unit: "+1.6 ± 0.2 deg".
-pub fn change_text(parameter: &OfferedParameter, change: f64, half_width: Option<f64>) -> String {
-    let unit = unit_text(&parameter.unit);
-    match half_width {
-        Some(half_width) if half_width > 0.0 && half_width.is_finite() => {
-            let count = interval_decimals(half_width);
-            format!(
-                "{} ± {}{unit}",
-                signed(change, count),
-                decimals(half_width, count)
-            )
-        }
-        _ => format!("{}{unit}", plain_change(change)),
-    }
-}
-
-/// Formats a change with up to six digits and its sign.
-fn plain_change(change: f64) -> String {
-    let text = with_minus_sign(&six_digits(change));
-    if change > 0.0 {
-        format!("+{text}")
-    } else {
-        text
-    }
-}
-
-/// Returns the unit after a space; empty for a number without unit ("1").
-fn unit_text(unit: &str) -> String {
-    if unit == "1" || unit.is_empty() {
-        String::new()
-    } else {
-        format!(" {unit}")
-    }
-}
-
-/// Returns the decimals that a half-width needs for one significant digit, or two if the first is
-/// 1.
-fn interval_decimals(half_width: f64) -> usize {
-    let exponent = half_width.log10().floor();
-    let first_digit = half_width / 10_f64.powf(exponent);
-    let mut count = -exponent;
-    if first_digit < 2.0 {
-        count += 1.0;
-    }
-    count.clamp(0.0, 9.0) as usize
-}
-
-/// Names an applied value: "Ixx +4 %".
-pub fn applied_value_text(value: &AppliedValue) -> String {
-    format!(
-        "{} {}",
-        value.parameter.name,
-        change_text(&value.parameter, value.change(), value.half_width())
-    )
-}
-
-/// Lists the applied values: "Ixx +4 %", "tail_lift +10 ± 2 %".
-pub fn applied_value_list(applied: &AppliedPhysics) -> Vec<String> {
-    applied.values.iter().map(applied_value_text).collect()
-}
 
 /// States the verdict on the parameters, and that a parameter with like effect cannot be excluded.
 pub fn verdict_text(findings: &PhysicsFindings) -> String {
@@ -139,7 +76,7 @@ fn verdict_sentence(findings: &PhysicsFindings) -> String {
         Verdict::Accounts => format!(
             "{}. The parameters explain {explained} of the misfit that remains after the channels' \
             gains and delays; the rest is close to the spread of the identified models.",
-            moves_text(&named)
+            needed_changes_text(&named)
         ),
         Verdict::InPart if named.is_empty() => format!(
             "The parameters explain {explained} of the misfit that remains after the channels' \
@@ -149,7 +86,7 @@ fn verdict_sentence(findings: &PhysicsFindings) -> String {
         Verdict::InPart => format!(
             "{}. The parameters explain {explained} of the misfit that remains after the channels' \
             gains and delays. Differences outside these parameters remain.",
-            moves_text(&named)
+            needed_changes_text(&named)
         ),
     }
 }
@@ -161,13 +98,17 @@ fn percent(share: f64) -> String {
 
 /// Lists the changes that named parameters need: "Changes needed to agree with flight: tail_lift
 /// +10 ± 2 %".
-fn moves_text(named: &[DiagnosedParameter<'_>]) -> String {
-    let mut moves = Vec::new();
-    for found in named {
-        let change = change_text(found.parameter, found.change(), found.half_width());
-        moves.push(format!("{} {change}", found.parameter.name));
+fn needed_changes_text(named: &[DiagnosedParameter<'_>]) -> String {
+    let mut changes = Vec::new();
+    for diagnosed in named {
+        let change = change_text(
+            diagnosed.parameter,
+            diagnosed.change(),
+            diagnosed.half_width(),
+        );
+        changes.push(format!("{} {change}", diagnosed.parameter.name));
     }
-    format!("Changes needed to agree with flight: {}", joined(&moves))
+    format!("Changes needed to agree with flight: {}", joined(&changes))
 }
 
 /// Joins parts by commas and "and".
@@ -180,10 +121,10 @@ fn joined(parts: &[String]) -> String {
 }
 
 /// Describes the diagnosis of a parameter: the change that it needs, or why it is not named.
-pub fn parameter_text(found: DiagnosedParameter<'_>) -> String {
-    let parameter = found.parameter;
-    let change = change_text(parameter, found.change(), found.half_width());
-    match found.diagnosis.why_not_named {
+pub fn parameter_text(diagnosed: DiagnosedParameter<'_>) -> String {
+    let parameter = diagnosed.parameter;
+    let change = change_text(parameter, diagnosed.change(), diagnosed.half_width());
+    match diagnosed.diagnosis.why_not_named {
         None => format!("change needed to agree with flight: {change}"),
         Some(WhyNotNamed::Held) => format!("held by hand at {change}"),
         Some(WhyNotNamed::FewConditions { found: count }) => format!(
@@ -201,14 +142,14 @@ pub fn parameter_text(found: DiagnosedParameter<'_>) -> String {
             "would need to {} by {}, more than is plausible: look for a parameter of similar \
             effect",
             if z < 0.0 { "decrease" } else { "increase" },
-            change_text(parameter, found.change().abs(), None).trim_start_matches('+')
+            change_text(parameter, diagnosed.change().abs(), None).trim_start_matches('+')
         ),
         Some(WhyNotNamed::DataSilent { .. }) => "not determined by the data".to_owned(),
-        Some(WhyNotNamed::IntervalContainsZero) => match found.interval() {
+        Some(WhyNotNamed::IntervalContainsZero) => match diagnosed.interval() {
             Some([least, most]) => format!(
                 "between {} and {}: no change needed",
-                interval_end(least, found),
-                interval_end(most, found)
+                interval_end(least, diagnosed),
+                interval_end(most, diagnosed)
             ),
             None => "no change needed".to_owned(),
         },
@@ -235,9 +176,13 @@ pub fn naming_words(why_not: Option<WhyNotNamed>) -> &'static str {
     }
 }
 
-fn interval_end(end: f64, found: DiagnosedParameter<'_>) -> String {
-    let count = interval_decimals(found.half_width().unwrap_or(1.0));
-    format!("{}{}", signed(end, count), unit_text(&found.parameter.unit))
+fn interval_end(end: f64, diagnosed: DiagnosedParameter<'_>) -> String {
+    let count = half_width_decimals(diagnosed.half_width().unwrap_or(1.0));
+    format!(
+        "{}{}",
+        signed(end, count),
+        unit_text(&diagnosed.parameter.unit)
+    )
 }
 
 /// Tabulates the parameters: change and half-width; plausible change; share of the misfit explained
@@ -261,16 +206,16 @@ pub fn parameter_table(findings: &PhysicsFindings, level: f64) -> Table {
         "verdict".to_owned(),
     ];
     let mut table = Table::new("Physics parameters", columns);
-    for found in findings.diagnosed() {
-        let diagnosis = found.diagnosis;
-        let half_width = found.half_width();
-        let count = interval_decimals(half_width.unwrap_or(found.parameter.plausible_sd));
+    for diagnosed in findings.diagnosed() {
+        let diagnosis = diagnosed.diagnosis;
+        let half_width = diagnosed.half_width();
+        let count = half_width_decimals(half_width.unwrap_or(diagnosed.parameter.plausible_sd));
         table.row([
-            found.parameter.name.clone(),
-            found.parameter.unit.clone(),
-            signed(found.change(), count),
+            diagnosed.parameter.name.clone(),
+            diagnosed.parameter.unit.clone(),
+            signed(diagnosed.change(), count),
             cell(half_width, count),
-            number(found.parameter.plausible_sd),
+            number(diagnosed.parameter.plausible_sd),
             cell(diagnosis.ratio_alone.map(|ratio| 100.0 * (1.0 - ratio)), 1),
             match diagnosis.step {
                 Some(step) => step.to_string(),
@@ -279,7 +224,7 @@ pub fn parameter_table(findings: &PhysicsFindings, level: f64) -> Table {
             cell(diagnosis.gain.map(|gain| 100.0 * gain), 1),
             cell(diagnosis.learned.map(|learned| 100.0 * learned), 0),
             cell(diagnosis.channels_can_take.map(|share| 100.0 * share), 0),
-            parameter_text(found),
+            parameter_text(diagnosed),
         ]);
     }
     for parameter in &findings.off {
@@ -306,93 +251,6 @@ fn cell(value: Option<f64>, count: usize) -> String {
         Some(value) => decimals(value, count),
         None => String::new(),
     }
-}
-
-/// Lists the cautions about the diagnosis.
-pub fn diagnosis_cautions(findings: &PhysicsFindings) -> Vec<String> {
-    let diagnosis = &findings.diagnosis;
-    let mut cautions = Vec::new();
-    if let Some(moving) = diagnosis.fit.still_moving {
-        cautions.push(format!(
-            "the fit has not converged after {} passes: {} still changes, usually because \
-            it cannot be told apart from another parameter; set a plausible value for one of \
-            the two",
-            diagnosis.fit.passes.len(),
-            parameter_name(findings, moving)
-        ));
-    }
-    for found in findings.diagnosed() {
-        if found.diagnosis.acts_like_channels() {
-            cautions.push(format!(
-                "{} acts like a gain or a delay of the channels; its value depends on the prior of \
-                the channel delays",
-                found.parameter.name
-            ));
-        }
-    }
-    for pair in &diagnosis.pairs {
-        let [first, second] = pair.parameters;
-        cautions.push(format!(
-            "{} and {} cannot be told apart (correlation {}): set a plausible value for one, or \
-            change both",
-            parameter_name(findings, first),
-            parameter_name(findings, second),
-            decimals(pair.correlation, 2)
-        ));
-    }
-    if let Some(weak) = diagnosis.weak_direction() {
-        cautions.push(weak_direction_text(weak, findings));
-    }
-    let poor = diagnosis.poorly_fitted();
-    if !poor.is_empty() {
-        let ids: Vec<String> = poor.iter().map(|id| id.to_string()).collect();
-        cautions.push(format!(
-            "condition {}: fitted more than {NOTABLE_MISFIT} times worse than the median \
-            condition; check the nominal model and the runs there",
-            ids.join(", ")
-        ));
-    }
-    cautions
-}
-
-/// Returns a parameter's name; `index` counts the parameters that are on.
-fn parameter_name(findings: &PhysicsFindings, index: usize) -> &str {
-    &findings.parameters[index].name
-}
-
-fn weak_direction_text(weak: &WeakDirection, findings: &PhysicsFindings) -> String {
-    /// Smallest component that is listed.
-    const LISTED: f64 = 0.2;
-    let mut parts = Vec::new();
-    for (&parameter, &component) in findings.diagnosis.fit.fitted.iter().zip(&weak.direction) {
-        if component.abs() >= LISTED {
-            parts.push(format!(
-                "{} {}",
-                signed(component, 2),
-                parameter_name(findings, parameter)
-            ));
-        }
-    }
-    format!(
-        "the data determine the combination {} (in plausible standard deviations) less than the \
-        plausible changes do",
-        parts.join(" ")
-    )
-}
-
-/// Lists the conditions that change a value most when they are left out: "without condition 10,
-/// tail_wake changes by −0.4 plausible standard deviations".
-pub fn pull_lines(findings: &PhysicsFindings) -> Vec<String> {
-    let mut lines = Vec::new();
-    for pull in findings.pulls().into_iter().take(LISTED_PULLS) {
-        lines.push(format!(
-            "without condition {}, {} changes by {} plausible standard deviations",
-            pull.condition,
-            parameter_name(findings, pull.parameter),
-            signed(pull.change, 2)
-        ));
-    }
-    lines
 }
 
 /// Tabulates mean J without and with the parameters.
@@ -422,39 +280,4 @@ pub fn channel_delay_table(
         ]);
     }
     table
-}
-
-/// Returns a text block to paste into the physics model's input: name, change, unit.
-pub fn paste_block(applied: &AppliedPhysics) -> String {
-    let mut text = String::from("# parameter  change from nominal  unit\n");
-    for value in &applied.values {
-        let name = &value.parameter.name;
-        let change = plain_change(value.change()).replace('\u{2212}', "-");
-        text.push_str(&format!("{name} = {change} {}\n", value.parameter.unit));
-    }
-    text
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn parameter(unit: &str) -> OfferedParameter {
-        OfferedParameter {
-            name: "p".to_owned(),
-            unit: unit.to_owned(),
-            plausible_sd: 1.0,
-            description: String::new(),
-        }
-    }
-
-    #[test]
-    fn changes_have_the_digits_of_their_interval() {
-        let text = |unit, change, half_width| change_text(&parameter(unit), change, half_width);
-        assert_eq!(text("deg", 1.58, Some(0.21)), "+1.6 ± 0.2 deg");
-        assert_eq!(text("%", 10.2, Some(2.1)), "+10 ± 2 %");
-        assert_eq!(text("1", 0.243, Some(0.17)), "+0.24 ± 0.17");
-        assert_eq!(text("%", -12.0, None), "−12 %");
-        assert_eq!(text("%", 4.0, Some(0.0)), "+4 %");
-    }
 }

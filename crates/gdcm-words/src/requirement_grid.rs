@@ -6,7 +6,7 @@ use gdcm_method::requirements::level_boundary::AssessedLevel;
 use gdcm_method::requirements::mode_comparison::ModeTolerance;
 use gdcm_method::requirements::{Tolerance, ToleranceTable};
 use gdcm_model::dataset::{Dataset, Pair};
-use gdcm_model::number_format::decimals;
+use gdcm_model::number_format::{NO_VALUE, decimals};
 use gdcm_model::units::{number, s_to_ms, signed};
 use gdcm_study::results::grid_cell::{CellVerdict, NotDetermined, RoleCell};
 use gdcm_study::results::grid_requirement::{
@@ -19,7 +19,7 @@ use crate::table::Table;
 use crate::time_histories::tolerance_text;
 
 /// Sign for a value that is not determined.
-pub const NONE: &str = "\u{2013}";
+pub const NOT_DETERMINED_SIGN: &str = NO_VALUE;
 /// Mark behind a value outside its limit, in tables without colours.
 pub const OUTSIDE_MARK: &str = "!";
 
@@ -117,8 +117,8 @@ pub fn shown_value(unit: RequirementUnit, value: f64) -> f64 {
     }
 }
 
-/// Formats a cell's value without decimals: a difference has a sign; a missing value becomes an en
-/// dash.
+/// Formats a cell's value, in the displayed unit and without decimals: a difference has a sign; a
+/// missing value becomes an en dash.
 ///
 /// Rounding must not move a value outside its limit to the other side (100.4 % of a tolerance is
 /// "101"):
@@ -129,7 +129,7 @@ pub fn shown_value(unit: RequirementUnit, value: f64) -> f64 {
 /// - all others to the nearest number
 pub fn value_text(requirement: Requirement, cell: &RoleCell) -> String {
     let Some(value) = cell.value else {
-        return NONE.to_owned();
+        return NOT_DETERMINED_SIGN.to_owned();
     };
     let shown = shown_value(requirement.unit(), value);
     let is_outside = cell.verdict == CellVerdict::Outside;
@@ -171,7 +171,7 @@ pub fn value_with_unit_text(requirement: Requirement, cell: &RoleCell) -> String
 pub fn level_text(level: Option<AssessedLevel>) -> String {
     match level.and_then(AssessedLevel::number) {
         Some(number) => number.to_string(),
-        None => NONE.to_owned(),
+        None => NOT_DETERMINED_SIGN.to_owned(),
     }
 }
 
@@ -187,6 +187,7 @@ pub fn limit_text(requirement: Requirement, limit: &RequirementLimit) -> String 
             format!("\u{2265} {}", rounded(shown_value(unit, *limit)))
         }
         RequirementLimit::IdentifiedLevel => "as flown".to_owned(),
+        // The relative part is left to `limit_description`.
         RequirementLimit::Tolerance(tolerance) => short_tolerance_text(tolerance),
         RequirementLimit::Mode(tolerance) => tolerance.entry.clone(),
         RequirementLimit::None => "none".to_owned(),
@@ -318,7 +319,7 @@ pub fn not_determined_text(why: &NotDetermined) -> String {
     }
 }
 
-/// Formats how many of the judged cells are met: "156 of 173 met".
+/// Formats how many of the cells with a verdict are met: "156 of 173 met".
 pub fn met_text(count: GridCount) -> String {
     format!("{} of {} met", count.met, count.judged)
 }
@@ -425,7 +426,11 @@ mod tests {
                 for (text, cell) in cells[GRID_HEADS..].iter().zip(&row.cells) {
                     let is_outside = cell.corrected.verdict == CellVerdict::Outside;
                     assert_eq!(text.ends_with(OUTSIDE_MARK), is_outside, "{cells:?}");
-                    assert_eq!(text == NONE, cell.corrected.value.is_none(), "{cells:?}");
+                    assert_eq!(
+                        text == NOT_DETERMINED_SIGN,
+                        cell.corrected.value.is_none(),
+                        "{cells:?}"
+                    );
                 }
             }
         }
@@ -441,7 +446,10 @@ mod tests {
         assert_eq!(value_text(level, &outside), "2");
         assert_eq!(value_with_unit_text(level, &outside), "Level 2");
         assert_eq!(level_text(Some(AssessedLevel::Level(3))), "3");
-        assert_eq!(level_text(Some(AssessedLevel::AboveBoundaries)), NONE);
+        assert_eq!(
+            level_text(Some(AssessedLevel::AboveBoundaries)),
+            NOT_DETERMINED_SIGN
+        );
     }
 
     #[test]
@@ -468,7 +476,7 @@ mod tests {
                     verdict: CellVerdict::NotDetermined(NotDetermined::NoMode)
                 }
             ),
-            NONE
+            NOT_DETERMINED_SIGN
         );
     }
 }

@@ -8,6 +8,9 @@
 //! λ, ζ       pole and damping ratio of a mode
 //! MUAD       maximum unnoticeable added dynamics: envelopes of a model's error
 //! ```
+//!
+//! A *role* is a version of a condition's model: physics, corrected, scheduled or identified; a
+//! *finding* is the result for a role.
 
 use gdcm_method::requirements::{BandwidthRule, LevelBoundaries, ModeVerdict, NamedBy};
 use gdcm_model::dataset::{ConditionId, Dataset};
@@ -86,6 +89,7 @@ pub fn has_levels(requirements: &Requirements, levels: &LevelBoundaries) -> bool
 /// band; that the phase delay is from the least-squares line.
 fn bandwidth_remark(finding: &BandwidthFinding) -> String {
     let mut words: Vec<String> = Vec::new();
+    // By the names of the quantities in the file.
     let absent = finding
         .absent
         .get("omega_bw_rad_s")
@@ -237,7 +241,7 @@ pub fn summary_table(requirements: &Requirements, histories: Option<&TimeHistori
     if let Some(histories) = histories {
         add_identified_rows(&mut table, histories);
     }
-    // By condition: the identified models' rows come last so far.
+    // By condition, the first column: the identified models' rows come last so far.
     table
         .rows
         .sort_by_key(|row| row[0].parse::<i64>().unwrap_or(i64::MAX));

@@ -1,9 +1,10 @@
 //! Sentences about the cost of constraints: from their sensitivity, and from solutions in which one
 //! entry is released or additionally constrained.
 //!
-//! A *sensitivity* is the derivative of the objective with respect to a constraint that is active:
-//! a held response or a bound. A *toggle* is the objective after a single response is released or
-//! held, found by solving again.
+//! A *sensitivity* is the derivative of the objective with respect to a constraint that is active,
+//! a held response or a bound, per dB or ms: if `per_unit` is positive, raising the constraint
+//! raises the objective. A *toggle* is the objective after a single response is released or held,
+//! found by solving again.
 
 use gdcm_method::correction::Quantity;
 use gdcm_method::correction::channels::pair_name;
@@ -29,6 +30,7 @@ pub fn sensitivity_text(
             format!("{symbol}_{}", channel.name(inputs, outputs))
         }
     };
+    // In dB or ms; small enough for the linear prediction.
     let step = sensitivity.step();
     // `min(100.0)`: by the linear prediction, an objective close to zero would become negative even
     // for the minimum step.
@@ -41,7 +43,8 @@ pub fn sensitivity_text(
     format!("{name} is {change} would lower the objective by about {percent:.2} %.")
 }
 
-/// Describes the constraint on a gain, and the change by `step` dB that lowers the objective.
+/// Describes the constraint on a gain, and the change by `step` dB that lowers the objective:
+/// "held: lowering its gain by 1 dB".
 fn gain_change_words(sensitivity: &Sensitivity, step: &str) -> String {
     let change = if sensitivity.per_unit > 0.0 {
         "lowering"
@@ -59,7 +62,9 @@ fn gain_change_words(sensitivity: &Sensitivity, step: &str) -> String {
     }
 }
 
-/// Describes the constraint on a delay, and the change by `step` ms that lowers the objective.
+/// Describes the constraint on a delay, and the change by `step` ms that lowers the objective:
+/// "held: 1 ms less delay". A bound is described as widened, because narrowing never lowers the
+/// objective.
 fn delay_change_words(sensitivity: &Sensitivity, step: &str) -> String {
     match sensitivity.constraint {
         ActiveConstraint::Held(_) if sensitivity.per_unit > 0.0 => {

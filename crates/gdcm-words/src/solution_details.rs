@@ -16,6 +16,7 @@ pub fn details(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
     const NOTABLE: f64 = 1e-3;
     let (inputs, outputs) = study.dataset.input_and_output_names();
     let mut details = vec![proof_text(result.gains.proof.outcome)];
+    // The first minimum is the solution itself.
     for minimum in result.gains.proof.local_minima.iter().skip(1) {
         let worse = 100.0 * (minimum.objective / result.gains.objective - 1.0);
         let of_inputs = named_gains(&inputs, &minimum.inputs);

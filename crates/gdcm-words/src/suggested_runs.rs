@@ -1,5 +1,6 @@
 //! Sentences and a file template for the runs (physics models with a moved parameter) worth making
-//! first (M18.4).
+//! first (M18.4). A *pattern* in couplings, leads and gains suggests them; the cyclic inputs are
+//! the longitudinal and lateral stick.
 
 use gdcm_model::dataset::Dataset;
 use gdcm_model::number_format::{decimals, signed};
@@ -26,15 +27,15 @@ pub fn pattern_text(pattern: &RunPattern, dataset: &Dataset) -> String {
     match pattern {
         RunPattern::CrossedCyclic {
             inputs: [first, second],
-            shares: [forth, back],
+            shares: [share_of_second, share_of_first],
         } => format!(
             "{} receives {} % of {}, and {} receives {} % of {}: opposite signs, the pattern of a \
             swashplate phase",
             inputs[*first],
-            signed(100.0 * forth, 1),
+            signed(100.0 * share_of_second, 1),
             inputs[*second],
             inputs[*second],
-            signed(100.0 * back, 1),
+            signed(100.0 * share_of_first, 1),
             inputs[*first]
         ),
         RunPattern::CrossedRate {
@@ -101,6 +102,7 @@ pub fn run_template(suggestions: &[SuggestedRuns]) -> String {
     {
         let unit = parameter.unit;
         let name = parameter.name;
+        // The suggested step is a plausible change.
         let step = number(parameter.step);
         declared.push(format!(
             "    {{\"name\": \"{name}\", \"unit\": \"{unit}\", \"plausible_sd\": {step}, \

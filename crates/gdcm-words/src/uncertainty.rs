@@ -3,7 +3,10 @@
 //! An error bar has two parts: *trim*, the spread over the physics models at other trims, and
 //! *identification*, the spread over the identified models or their own standard errors. *Scatter*
 //! is the variation of a net gain over the conditions; *unexplained* is its part beyond the error
-//! bars. Holm's correction raises probabilities for the number of tests.
+//! bars. The *residual in the band* is the spread over frequency of the gain that would be needed:
+//! a constant gain leaves it. Holm's correction raises probabilities for the number of tests.
+//!
+//! Gains are compared as logarithms, so that a standard deviation of 0.01 is 1 %.
 
 use gdcm_method::uncertainty::bar::BarRemark;
 use gdcm_method::uncertainty::{Bar, Scalar, VarianceDecomposition};
@@ -32,6 +35,7 @@ fn bar_remark_text(remark: BarRemark) -> &'static str {
 
 /// Returns the verdict on a difference at equal airspeed, at a confidence level.
 pub fn difference_verdict(difference: &AirspeedDifference, level: f64) -> &'static str {
+    // Without a spread of the bundles, a difference has no test.
     if difference.p_holm.is_none() {
         "no spread"
     } else if difference.is_significant(level) {
@@ -92,18 +96,18 @@ pub fn second_variable_text(test: &SecondVariableTest) -> String {
         Err(error) => return format!("{variable}: {error}"),
     };
     let percent = 100.0 * effect.effect;
-    let visible = 100.0 * effect.visible;
+    let detectable = 100.0 * effect.visible;
     let sign = if percent < 0.0 { "−" } else { "+" };
     format!(
         "net gain {sign}{:.1} % from the lowest to the highest {variable}, which is {} in the \
-        schedule; an effect below ± {visible:.1} % could not have been detected",
+        schedule; an effect below ± {detectable:.1} % could not have been detected",
         percent.abs(),
-        need(test)
+        verdict_on_need(test)
     )
 }
 
 /// Returns the verdict on a second variable.
-fn need(test: &SecondVariableTest) -> &'static str {
+fn verdict_on_need(test: &SecondVariableTest) -> &'static str {
     if test.needed { "needed" } else { "not needed" }
 }
 
@@ -191,7 +195,7 @@ pub fn second_variable_table(dataset: &Dataset, uncertainty: &Uncertainty) -> Ta
                 probability(test.p_holm),
                 percent(effect.left_out_without),
                 percent(effect.left_out_with),
-                need(test).to_owned(),
+                verdict_on_need(test).to_owned(),
             ]),
         }
         table.row(cells);

@@ -128,6 +128,10 @@ pub fn study_verdict_text(analysis: &Analysis) -> String {
     )
 }
 
+/// Columns of the verdict table without the optional number of suggested outliers. Gains and phases
+/// take two each: the count of matched responses, and the verdict.
+const VERDICT_COLUMNS: [&str; 7] = ["condition", "gain", "", "phase", "", "J before", "J after"];
+
 /// Tabulates the verdict on each condition, one row each: gains, phases, and mean J over the
 /// constrained responses before and after the condition's own correction; if any model is suggested
 /// to be rejected, also the number of such models.
@@ -137,7 +141,7 @@ pub fn verdict_table(analysis: &Analysis) -> Table {
         .dataset
         .ids()
         .any(|id| open_suggestions(analysis, id) > 0);
-    let mut columns = vec!["condition", "gain", "", "phase", "", "J before", "J after"];
+    let mut columns = VERDICT_COLUMNS.to_vec();
     if suggests {
         columns.push("suggested outliers");
     }
@@ -188,7 +192,7 @@ fn result_cells(study: &Study, result: &ConditionAnalysis, name: String) -> Vec<
 
 fn without_result_cells(name: String, why: String) -> Vec<String> {
     let mut cells = vec![name, NO_VALUE.to_owned(), format!("no result: {why}")];
-    cells.resize(7, NO_VALUE.to_owned());
+    cells.resize(VERDICT_COLUMNS.len(), NO_VALUE.to_owned());
     cells
 }
 

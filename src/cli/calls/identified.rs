@@ -9,7 +9,7 @@ use gdcm_model::dataset::Model;
 use gdcm_model::message_text::sanitized;
 use gdcm_model::progress::Progress;
 use gdcm_study::decisions::adopted_models::AdoptedModels;
-use gdcm_sysid::identification::{Identification, IdentificationError};
+use gdcm_sysid::identification::Identification;
 use gdcm_sysid::records::record_table::shortened_list;
 
 use super::opened::OpenedData;
@@ -60,15 +60,7 @@ pub fn identify(
             reading,
             duplicates,
         };
-        let found = match task.run(ProgressReceiver::Program(progress)) {
-            Ok(found) => found,
-            Err(IdentificationError::Stopped(stopped)) => return Err(stopped.into()),
-            Err(why) => {
-                return Err(Failure::NoModels {
-                    reason: format!("no model was identified: {why}"),
-                });
-            }
-        };
+        let found = task.run(ProgressReceiver::Program(progress))?;
         let outputs = OutputSet::new(existing(false), Vec::new());
         let mut identifications = Identifications::new(basis, None, outputs);
         let described = identifications.describe(task, &found);

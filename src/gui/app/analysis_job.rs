@@ -5,6 +5,9 @@
 //! a job of its own. The live analysis has a limited effort for each proof, so it may first show
 //! gains that are not yet proven. The *distances* compare the models of a condition with each
 //! other.
+//!
+//! A *request* is a study with a displayed condition. A *job* computes it; when a proof arrives,
+//! another job computes the same request again, with this proof.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -35,9 +38,9 @@ pub(super) struct TimedAnalysis {
 /// Request for the live analysis of a study. The large parts are shared, so a copy is cheap.
 #[derive(Clone)]
 pub(super) struct AnalysisJob {
-    /// Job number. A later proof causes another job, with a new number, for the same request.
+    /// Job number, which increases with each job.
     pub(super) number: u64,
-    /// Request number; it increases with each request.
+    /// Request number, which increases with each request.
     pub(super) request: u64,
     pub(super) study: Study,
     /// The displayed condition, whose result is computed first.
@@ -71,13 +74,13 @@ impl AnalysisJob {
     /// Returns whether both jobs compute the same responses (same dataset, band and frequencies)
     /// and begin with the same condition. Their distances agree too, unless the coherence threshold
     /// differs.
-    fn compares_the_same(&self, other: &Self) -> bool {
+    fn needs_same_responses(&self, other: &Self) -> bool {
         let settings = &self.study.settings;
-        let others = &other.study.settings;
+        let other_settings = &other.study.settings;
         Arc::ptr_eq(&self.study.dataset, &other.study.dataset)
             && self.condition == other.condition
-            && settings.band == others.band
-            && settings.points == others.points
+            && settings.band == other_settings.band
+            && settings.points == other_settings.points
     }
 }
 
@@ -107,17 +110,21 @@ impl Job for AnalysisJob {
         })
     }
 
-    /// Returns whether this job should continue although a newer job waits: always if both have the
-    /// same request number; otherwise only while responses and distances are being computed that
-    /// the newer job needs too. Without this rule, only the displayed condition would be updated
-    /// during a steady drag.
+    /// Returns whether this job should continue although a newer job waits:
+    ///
+    /// - always, if both have the same request: only a proof is new
+    /// - otherwise, only while it computes responses and distances that the newer job needs too,
+    ///   and then finds in the engine's caches
+    ///
+    /// Without this rule, only the displayed condition would be updated during a steady drag.
     fn serves(&self, newer: &Self, done: usize, total: usize) -> bool {
         if self.request == newer.request {
             return true;
         }
-        // The comparison counts as complete once no more steps are left than conditions: the last
-        // step in each condition is the optimum, which also depends on other settings.
-        let is_compared = total > 0 && done + self.study.dataset.conditions().len() >= total;
-        !is_compared && self.compares_the_same(newer)
+        // The last step in each condition is the optimum, which depends on all settings: once no
+        // more steps are left than conditions, responses and distances count as complete.
+        let optima = self.study.dataset.conditions().len();
+        let has_all_distances = total > 0 && done + optima >= total;
+        !has_all_distances && self.needs_same_responses(newer)
     }
 }

@@ -4,8 +4,12 @@
 //! [`Autosave`] sends tasks to the thread, whose state is the [`Keeper`] in `autosave/keeper.rs`.
 //! `recovery.rs` offers the kept decisions at the next start.
 //!
-//! A *lost study* is a recovery file that an earlier window left behind because it ended without
-//! saving.
+//! | decisions | meaning |
+//! |---|---|
+//! | unsaved | made since the study was last saved; [`Remains`] says where they are |
+//! | kept | in this window's recovery file ([`Kept`]) |
+//! | lost | in the recovery file of an earlier window, which ended without saving ([`LostStudy`]) |
+//! | restored | lost, and now open again in this window |
 
 mod keeper;
 
@@ -23,8 +27,8 @@ use super::threads::ReplySender;
 
 /// Folder for recovery files in the program's directory.
 const FOLDER: &str = "recovery";
-/// Waiting time if no work is pending.
-const NEVER: Duration = Duration::from_secs(3600);
+/// Waiting time if no work is pending: long, because any task ends the wait.
+const IDLE_WAIT: Duration = Duration::from_secs(3600);
 
 /// Decisions to keep. Study and dataset are shared, so a copy is cheap.
 #[derive(Clone, Debug)]
@@ -185,7 +189,7 @@ mod tests {
     fn start_autosave(directory: Option<&Path>) -> Autosave {
         Autosave::start(
             directory,
-            NEVER,
+            IDLE_WAIT,
             ReplySender::new(&egui::Context::default()).0,
         )
         .unwrap()

@@ -70,7 +70,7 @@ macro_rules! needed_jobs {
 pub(super) struct BackgroundJobs {
     /// Job kinds, the most urgent first.
     kinds: Rc<Vec<Box<dyn AnyJobKind>>>,
-    /// Not used, but dropping it would end the threads.
+    /// Held only because dropping it would end the threads.
     _pool: JobPool,
 }
 
@@ -133,13 +133,15 @@ impl Engines {
     }
 }
 
-/// Returns the executor with which a job uses all cores.
+/// Returns the tools for jobs without an engine that use all cores.
 fn cores() -> Box<dyn Executor> {
     Box::new(Pool)
 }
 
+/// Returns the tools for jobs that need none and use a single core.
 fn no_tools() {}
 
+/// Adds the live analysis, the most urgent kind.
 fn add_live_analysis(kinds: &mut JobKinds<'_>, engines: &Engines) {
     let analyses = JobKind::new(
         |app| app.work.live_job.iter().cloned().collect(),
@@ -174,7 +176,7 @@ fn add_short_kinds(kinds: &mut JobKinds<'_>, engines: &Engines) {
         |app| trade_off_job(&app.state).into_iter().collect(),
         |app, job, trade_off| app.state.results.trade_off = Some((job, trade_off)),
     )
-    .with_report(|_, _| {});
+    .without_report();
     kinds.add(LaneClass::Short, no_tools, trade_offs);
     let requirements = JobKind::new(
         |app| needed_jobs!(app, Requirements),
@@ -185,7 +187,7 @@ fn add_short_kinds(kinds: &mut JobKinds<'_>, engines: &Engines) {
         |app| app.state.export_plan_job().into_iter().collect(),
         GdcmApp::take_export_plan,
     )
-    .with_report(|_, _| {});
+    .without_report();
     kinds.add(LaneClass::Short, no_tools, export_plans);
     let test_answers = JobKind::new(
         |app| needed_jobs!(app, TestAnswers),

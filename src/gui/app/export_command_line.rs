@@ -7,7 +7,7 @@
 use std::path::{Path, PathBuf};
 
 use gdcm_io::Example;
-use gdcm_io::export::export_set::CHECKSUMS;
+use gdcm_io::export::export_set::{CHECKSUMS, ExportSet};
 use gdcm_model::dataset::{BundleKind, ModelId};
 use gdcm_study::decisions::export_choices::ExportChoices;
 use gdcm_study::decisions::setting_table::SETTINGS;
@@ -64,48 +64,67 @@ pub(super) fn export_command_line(
         let text = "the command line reads the decisions from the study: save it first";
         return Err(Message::new("study-not-saved", text));
     };
-    let folder = std::path::absolute(&set.folder).unwrap_or_else(|_| set.folder.clone());
     let mut lines = Vec::new();
     if !set.formats.is_empty() {
-        let mut words = vec!["gdcm".to_owned(), "export".to_owned()];
-        words.extend(decisions.iter().cloned());
-        let mut names: Vec<&str> = set.formats.iter().map(|format| format.name).collect();
-        if set.has_checksums {
-            names.push(CHECKSUMS);
-        }
-        words.extend(["--as".to_owned(), names.join(",")]);
-        words.extend(["--folder".to_owned(), folder.display().to_string()]);
-        if !set.prefix.is_empty() {
-            words.extend(["--prefix".to_owned(), set.prefix.clone()]);
-        }
-        for given in given_options(form, set.request.breakpoints_kt.as_deref()) {
-            let is_accepted = set
-                .formats
-                .iter()
-                .any(|format| format.options.contains(&given.option));
-            if is_accepted {
-                words.extend([given.option.to_owned(), given.argument]);
-            }
-        }
-        let existing = if form.choices.replaces {
-            "--force"
-        } else {
-            "--number"
-        };
-        words.push(existing.to_owned());
-        lines.push(shell_line(&words));
+        lines.push(shell_line(&export_words(form, &set, &decisions)));
     }
     if set.has_report {
-        let mut words = vec!["gdcm".to_owned(), "report".to_owned()];
-        words.extend(decisions);
-        let path = folder.join(format!("{}report.html", set.prefix));
-        words.extend(["--out".to_owned(), path.display().to_string()]);
-        if form.choices.replaces {
-            words.push("--force".to_owned());
-        }
-        lines.push(shell_line(&words));
+        lines.push(shell_line(&report_words(form, &set, &decisions)));
     }
     Ok(lines.join("\n"))
+}
+
+/// Returns the words of `gdcm export`: the study, the formats, the folder, the options that the
+/// formats accept, and what happens to existing files.
+fn export_words(form: &ExportForm, set: &ExportSet, decisions: &[String]) -> Vec<String> {
+    let mut words = vec!["gdcm".to_owned(), "export".to_owned()];
+    words.extend(decisions.iter().cloned());
+    let mut names: Vec<&str> = set.formats.iter().map(|format| format.name).collect();
+    if set.has_checksums {
+        names.push(CHECKSUMS);
+    }
+    words.extend(["--as".to_owned(), names.join(",")]);
+    words.extend([
+        "--folder".to_owned(),
+        absolute(&set.folder).display().to_string(),
+    ]);
+    if !set.prefix.is_empty() {
+        words.extend(["--prefix".to_owned(), set.prefix.clone()]);
+    }
+    for given in given_options(form, set.request.breakpoints_kt.as_deref()) {
+        let is_accepted = set
+            .formats
+            .iter()
+            .any(|format| format.options.contains(&given.option));
+        if is_accepted {
+            words.extend([given.option.to_owned(), given.argument]);
+        }
+    }
+    let existing = if form.choices.replaces {
+        "--force"
+    } else {
+        "--number"
+    };
+    words.push(existing.to_owned());
+    words
+}
+
+/// Returns the words of `gdcm report`: the study, and the path.
+fn report_words(form: &ExportForm, set: &ExportSet, decisions: &[String]) -> Vec<String> {
+    let mut words = vec!["gdcm".to_owned(), "report".to_owned()];
+    words.extend(decisions.iter().cloned());
+    let path = absolute(&set.folder).join(format!("{}report.html", set.prefix));
+    words.extend(["--out".to_owned(), path.display().to_string()]);
+    if form.choices.replaces {
+        words.push("--force".to_owned());
+    }
+    words
+}
+
+/// Returns the absolute path, so that the command may be run in any folder; the path itself if that
+/// fails.
+fn absolute(path: &Path) -> PathBuf {
+    std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
 }
 
 /// Command-line option with its argument.
@@ -165,8 +184,7 @@ fn study_words(study: &Study, source: &CommandSource) -> Option<Vec<String>> {
     let mut trial = source.study.clone()?;
     let mut words = Vec::new();
     if let Some(file) = &source.file {
-        let path = std::path::absolute(file).unwrap_or_else(|_| file.clone());
-        words.push(path.display().to_string());
+        words.push(absolute(file).display().to_string());
     }
     // Step 2.
     for setting in SETTINGS {

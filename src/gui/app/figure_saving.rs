@@ -10,7 +10,7 @@ use gdcm_plot::figure::{ColumnWidth, Figure, FigureFormat, FigureKind};
 use gdcm_words::Table;
 
 use super::GdcmApp;
-use super::exports::{AbsentBars, absent_bars_suffix};
+use super::results_to_write::{AbsentBars, absent_bars_suffix};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::output::OutputCommand;
 use crate::gui::state::forms::FormKind;

@@ -50,6 +50,11 @@ impl<J: Job> JobKind<J> {
         self
     }
 
+    /// Leaves the kind's work out of the displayed progress.
+    pub(super) fn without_report(self) -> Self {
+        self.with_report(|_, _| {})
+    }
+
     /// Gives the kind its own trigger, which `withdraw` resets.
     pub(super) fn with_withdrawal(mut self, withdraw: fn(&mut GdcmApp)) -> Self {
         self.withdraw = Some(withdraw);

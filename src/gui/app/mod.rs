@@ -52,6 +52,7 @@ mod recovery;
 mod reload;
 mod report_job;
 mod requirement_files;
+mod results_to_write;
 mod saving;
 mod selection_commands;
 mod setup;

@@ -20,8 +20,8 @@ use gdcm_study::results::grid_cell::{CellVerdict, GridCell};
 use gdcm_study::results::grid_requirement::{Requirement, RequirementGroup};
 use gdcm_study::results::requirement_grid::{GridRow, RequirementGrid};
 use gdcm_words::requirement_grid::{
-    NONE, group_description, group_name, limit_description, limit_text, unit_text, value_text,
-    value_with_unit_text, verdict_text,
+    NOT_DETERMINED_SIGN, group_description, group_name, limit_description, limit_text, unit_text,
+    value_text, value_with_unit_text, verdict_text,
 };
 
 use super::requirement_limits::limit_editor_ui;
@@ -411,7 +411,7 @@ impl GridPainter<'_> {
             let text = if has_verdict {
                 format!("{}/{}", count.met, count.judged)
             } else {
-                NONE.to_owned()
+                NOT_DETERMINED_SIGN.to_owned()
             };
             let look = CellLook {
                 text: &text,
@@ -705,7 +705,7 @@ fn neighbour<T: Copy>(entries: &[T], here: usize, by: isize) -> Option<T> {
 pub(super) fn grid_legend_ui(ui: &mut Ui, palette: &Palette) {
     ui.spacing_mut().item_spacing.x = 6.0;
     if ui.available_width() > 560.0 {
-        ui.label(palette.small(format!("{NONE} not determined")));
+        ui.label(palette.small(format!("{NOT_DETERMINED_SIGN} not determined")));
         ui.add_space(6.0);
     }
     ui.label(palette.small("background: corrected outside"));

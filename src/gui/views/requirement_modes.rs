@@ -11,7 +11,7 @@ use gdcm_study::results::required_modes::{ModeFinding, ModeNumbers};
 use gdcm_study::results::requirement_role::RequirementRole;
 use gdcm_study::results::requirements::Requirements;
 use gdcm_words::missing_results::missing_reason_text;
-use gdcm_words::requirement_grid::NONE;
+use gdcm_words::requirement_grid::NOT_DETERMINED_SIGN;
 use gdcm_words::requirements::mode_verdict_words;
 
 use crate::gui::commands::command::Command;
@@ -166,7 +166,7 @@ impl ModeRow<'_> {
 
     /// Draws modulus and damping ratio, right-aligned; a real mode has no damping ratio.
     fn paint_numbers(&self, ui: &Ui, row: Rect, edges: [f32; 2], numbers: Option<&ModeNumbers>) {
-        let mut texts = [NONE.to_owned(), String::new()];
+        let mut texts = [NOT_DETERMINED_SIGN.to_owned(), String::new()];
         if let Some(numbers) = numbers {
             texts[0] = decimals(numbers.modulus_rad_s(), 2);
             if numbers.values.period_s.is_some()

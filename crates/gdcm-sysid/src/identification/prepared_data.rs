@@ -32,11 +32,11 @@ use crate::spectra::local_polynomial_error::LocalPolynomialError;
 use crate::spectra::preparation::{prepare, prepare_filled};
 use crate::spectra::record_cautions::RecordCaution;
 use crate::spectra::record_use::RecordUse;
-use crate::spectra::reference_response::Instrument;
+use crate::spectra::reference_response::ReferenceResponse;
 use crate::spectra::response_estimate::ResponseEstimate;
 use crate::spectra::scales::{Scales, ScalingError};
 use crate::spectra::spectrum::{LineRange, Spectrum};
-use crate::subspace::tried_orders::{Extent, VALUES_PER_UNKNOWN, parameters_of_order};
+use crate::subspace::tried_orders::{DataExtent, VALUES_PER_PARAMETER, parameters_of_order};
 
 /// Number of frequencies at which the response is measured.
 const MEASURED_POINTS: usize = 40;
@@ -195,10 +195,10 @@ impl<'a> PreparedData<'a> {
     pub(crate) fn subspace_settings(&self, options: &Options) -> SubspaceSettings {
         let outputs = self.scales.outputs.len();
         let highest = options.band[1];
-        let extent = Extent {
+        let extent = DataExtent {
             inputs: self.scales.inputs.len(),
             outputs,
-            figures: 2 * outputs * self.line_count().saturating_sub(self.spectra.len()),
+            real_values: 2 * outputs * self.line_count().saturating_sub(self.spectra.len()),
             radians: self.duration_s() * highest,
         };
         let pasts = match &options.pasts {
@@ -459,7 +459,8 @@ impl Lines {
         })
     }
 
-    /// Measures the response through the references in the `driven` segments; see [`Instrument`].
+    /// Measures the response through the references in the `driven` segments; see
+    /// [`ReferenceResponse`].
     fn measure_through_reference<'a>(
         self,
         driven: &[Segment],
@@ -467,11 +468,11 @@ impl Lines {
         executor: &'a dyn Executor,
     ) -> Result<Measurement<'a>, IdentificationError> {
         let driven_lines = self.reach.spectra(driven, executor);
-        let instrument = Instrument::new(&driven_lines, self.used, outputs, executor)?;
+        let response = ReferenceResponse::new(&driven_lines, self.used, outputs, executor)?;
         let logged = self.measure_response(executor)?;
         Ok(Measurement {
-            measured: instrument.measured,
-            spectra: instrument.spectra,
+            measured: response.measured,
+            spectra: response.spectra,
             direct: Some(weigh(&self.to_fit, &logged, executor)?),
         })
     }
@@ -577,7 +578,7 @@ fn check_figures(segments: usize, lines: &[Spectrum]) -> Result<(), Identificati
     let count: usize = lines.iter().map(|lines| lines.omega.len()).sum();
     let figures = (2 * outputs * count).saturating_sub(2 * outputs * segments);
     let unknowns = parameters_of_order(1, inputs, outputs);
-    let needed = VALUES_PER_UNKNOWN * unknowns;
+    let needed = VALUES_PER_PARAMETER * unknowns;
     if figures < needed {
         return Err(IdentificationError::TooFewFigures {
             figures,

@@ -6,7 +6,7 @@
 //! | valid samples, and gaps (M14.1) | `valid_samples`, `frozen_outputs`, `gap_search`, [`gap`], `grid_stretches` |
 //! | missing samples as unknowns (M14.21) | [`filled_segment`], [`gap_hat`] |
 //! | use of each record | [`record_use`] |
-//! | doubts about channels (M14.18) | [`record_cautions`], [`caution_note`], `clipping`, `stairs`, `coarse_steps`, `spikes`, `rate_limit` |
+//! | doubts about channels (M14.18) | [`record_cautions`], [`caution_note`], `channel_cautions`, `clipping`, `stairs`, `coarse_steps`, `spikes`, `rate_limit` |
 //! | helpers of these | `finite_samples`, `fresh_samples`, `value_range`, `signal_names` |
 //! | low-pass and scales (M14.1) | [`cut_off`], [`scales`] |
 //! | spectra (M14.2) | [`spectrum`] |
@@ -14,6 +14,7 @@
 //! | response through a reference (M14.15) | `reference_response` |
 
 pub mod caution_note;
+mod channel_cautions;
 pub(crate) mod clipping;
 mod coarse_steps;
 pub mod cut_off;

@@ -7,12 +7,13 @@ use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::executor::{Executor, each};
 use gdcm_model::simulation::{FlightRecord, Segment, Signal};
 
+use super::channel_cautions::{channel_cautions, inputs_at_limit, stuck_caution};
 use super::filled_segment::FilledSegment;
 use super::gap::{Cause, Gap, Treatment};
 use super::gap_search::record_gaps;
 use super::grid_stretches::{GridRows, RowRange, grid_rows};
 use super::preparation_settings::{Preparation, PreparationError};
-use super::record_cautions::{RecordCaution, channel_cautions, inputs_at_limit, stuck_caution};
+use super::record_cautions::RecordCaution;
 use super::record_clock::Clock;
 use super::record_use::RecordUse;
 use super::spectrum::LineRange;
@@ -53,7 +54,7 @@ pub struct Prepared {
 ///    minimum segment length (10 s by default)
 /// then, over all records
 ///    no segment, or a channel that is constant in all of them: an error
-///    cautions about channels (record_cautions)
+///    cautions about channels (channel_cautions)
 /// ```
 ///
 /// No mean or trend is removed, and nothing is filtered. Every gap that is not bridged is cut out:

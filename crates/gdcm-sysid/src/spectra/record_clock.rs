@@ -11,8 +11,8 @@ use super::preparation_settings::PreparationError;
 /// Stamps are even if they deviate from multiples of the sample time by at most this much \[%\]
 /// (M14.1).
 const UNEVEN_PERCENT: f64 = 20.0;
-/// Quantile of the deviations that is compared with the limit: a single late stamp is no jitter.
-const COUNTED: f64 = 0.95;
+/// Quantile of the deviations that is the jitter: a single late stamp is none.
+const JITTER_QUANTILE: f64 = 0.95;
 /// Tolerance for rounded stamps: relative to the jitter limit, and in samples at a grid point.
 const ROUNDING: f64 = 1e-6;
 
@@ -57,6 +57,7 @@ impl Clock {
         check_increasing(record, &rows, &times)?;
         let steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
         let sample_time_s = quantile_or_zero(steps.clone(), 0.5);
+        // In sample times. A step over missing rows is a multiple of the sample time.
         let deviations = steps
             .iter()
             .map(|step| step / sample_time_s)
@@ -65,7 +66,7 @@ impl Clock {
         Ok(Self {
             start_s,
             sample_time_s,
-            jitter_percent: 100.0 * quantile_or_zero(deviations, COUNTED),
+            jitter_percent: 100.0 * quantile_or_zero(deviations, JITTER_QUANTILE),
             rows,
             times,
             longest_step_s: (longest_bridge as f64 + 1.5) * sample_time_s,

@@ -15,13 +15,14 @@ use super::scales::Scales;
 pub(crate) const TERMS: usize = 3;
 /// Median partial coherence from which an input counts as swept by itself (M14.2).
 const LEAST_PARTIAL_COHERENCE: f64 = 0.3;
-/// Condition number of the inputs' spectral matrix up to which they count as moved independently.
+/// Condition number of the inputs' spectral matrix up to which they count as moved independently:
+/// above it, some combination of inputs has less than 1/30 of the largest combination's amplitude.
 const GREATEST_CONDITION: f64 = 1e3;
 /// Minimum partial coherence at which a point is trusted (M14.2).
 pub const TRUSTED_COHERENCE: f64 = 0.6;
 /// The band is too wide at an end if at least this share of it shows no response there, in
 /// logarithmic frequency (M14.10).
-const END: f64 = 0.2;
+const EMPTY_END: f64 = 0.2;
 
 /// The measured response at a frequency.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,25 +59,25 @@ impl EstimatePoint {
         (0.5 * self.variance[pair]).sqrt() / self.response[pair].norm()
     }
 
-    /// Returns an input's largest partial coherence `c` over the outputs, less the share that noise
-    /// would explain with as many columns as the input has terms: `1 - (1 - c) (freedom + 3) /
-    /// freedom`, at least 0.
+    /// Returns an input's largest partial coherence `c` over the outputs, adjusted for the share
+    /// that noise would explain with the input's 3 regressors: `1 - (1 - c) (freedom + 3) /
+    /// freedom`, at least 0, as in an adjusted coefficient of determination.
     ///
-    /// Without this correction, the maximum over many outputs would hardly ever be small.
-    fn greatest_coherence(&self, input: usize) -> f64 {
-        let columns = TERMS as f64;
+    /// Without the adjustment, the maximum over many outputs would hardly ever be small.
+    fn adjusted_coherence(&self, input: usize) -> f64 {
+        let regressors = TERMS as f64;
         let freedom = self.freedom.max(1) as f64;
         let greatest = self
             .partial_coherence
             .column(input)
             .iter()
             .fold(0.0, |a: f64, b| a.max(*b));
-        (1.0 - (1.0 - greatest) * (freedom + columns) / freedom).max(0.0)
+        (1.0 - (1.0 - greatest) * (freedom + regressors) / freedom).max(0.0)
     }
 
     /// Returns whether at least one input is coherent with an output.
-    fn is_shown(&self) -> bool {
-        (0..self.response.ncols()).any(|input| self.greatest_coherence(input) >= TRUSTED_COHERENCE)
+    fn shows_response(&self) -> bool {
+        (0..self.response.ncols()).any(|input| self.adjusted_coherence(input) >= TRUSTED_COHERENCE)
     }
 
     /// Converts a point in scaled units to record units.
@@ -98,8 +99,8 @@ impl EstimatePoint {
 /// How far each input was excited independently.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Excitation {
-    /// For each input: largest partial coherence with any output, less the share explained by
-    /// chance; median over frequency, 0 to 1.
+    /// For each input: largest partial coherence with any output, adjusted for chance; median over
+    /// frequency, 0 to 1.
     pub partial_coherence: Vec<f64>,
     /// Condition number of the inputs' spectral matrix, as a median over frequency.
     pub condition: f64,
@@ -146,11 +147,11 @@ impl ResponseEstimate {
         let mut shown = self
             .points
             .iter()
-            .filter(|point| (band[0]..=band[1]).contains(&point.omega) && point.is_shown())
+            .filter(|point| (band[0]..=band[1]).contains(&point.omega) && point.shows_response())
             .map(|point| point.omega);
         let first = shown.next()?;
         let last = shown.next_back()?;
-        let fifth = (band[1] / band[0]).powf(END);
+        let fifth = (band[1] / band[0]).powf(EMPTY_END);
         let lower = if first > band[0] * fifth {
             first
         } else {
@@ -212,7 +213,7 @@ impl ResponseEstimate {
             let mut coherences: Vec<f64> = self
                 .points
                 .iter()
-                .map(|point| point.greatest_coherence(input))
+                .map(|point| point.adjusted_coherence(input))
                 .collect();
             partial_coherence.push(median(&mut coherences));
         }

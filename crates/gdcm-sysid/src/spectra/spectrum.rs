@@ -10,8 +10,8 @@ use gdcm_numerics::{FourierPlanner, FourierTransform};
 
 use super::gap_hat::GapHat;
 
-/// Lowest frequency used, in units of a segment's first line. The first line contains the drift, so
-/// that the lines are used from the second on.
+/// Lowest frequency used, in units of a segment's first line: halfway to the second. The first line
+/// contains the drift, so that the lines are used from the second on.
 pub(crate) const FIRST_LINE: f64 = 1.5;
 
 /// A segment's spectral lines (M14.2): columns are lines, rows are channels.
@@ -35,7 +35,8 @@ pub struct Spectrum {
     pub inputs: DMatrix<Complex<f64>>,
     /// `Y`, outputs x lines.
     pub outputs: DMatrix<Complex<f64>>,
-    /// Missing samples as hats; empty for a segment without gaps.
+    /// Lines of the *hats*, triangles in the gaps whose heights are estimated with each model
+    /// (`gap_hat`); empty for a segment without gaps.
     pub hats: Vec<GapHat>,
 }
 
@@ -89,14 +90,14 @@ impl LineRange {
 }
 
 /// Computes every segment's lines up to `highest` \[rad/s\] and below half the sampling frequency,
-/// in segment order.
+/// in segment order and without hats.
 #[must_use]
 pub fn spectra(segments: &[Segment], highest: f64, executor: &dyn Executor) -> Vec<Spectrum> {
     let segments: Vec<&Segment> = segments.iter().collect();
     spectra_of(&segments, highest, executor)
 }
 
-/// Computes the lines as [`spectra`] does.
+/// Computes the lines as [`spectra`] does, for segments that are not in one list.
 pub(crate) fn spectra_of(
     segments: &[&Segment],
     highest: f64,

@@ -1,21 +1,23 @@
 //! Finds spikes: single wrong samples, as after a faulty transmission (M14.24).
 //!
 //! ```text
-//! samples    without repetitions in stairs (`fresh_samples`)
-//! candidate  at most 3 consecutive samples, at most 0.1 s (a single sample always), on one side of
-//!            the straight line between their neighbours, the nearest at least half as far as the
-//!            farthest; the neighbours differ by at most half of the nearest distance, and each
-//!            differs from the sample beyond it by at most a quarter
-//! scale      of single samples, |x_k - (x_{k-1} + x_{k+1}) / 2|: the larger of the 95 % quantile of
-//!            the record and the 90 % quantile of 25 samples on each side
-//! spike      the longest candidate from a sample on, with a nearest distance >= 6 scales,
-//!            >= 3 steps of the log and >= 1 standard deviation of the other samples
-//! no spikes  more than 2 % of the samples: the channel moves in pulses
+//! 1  samples without repetitions in stairs (`fresh_samples`)
+//! 2  roughness of single samples, |x_k - (x_{k-1} + x_{k+1}) / 2|; usual: 95 % quantile
+//! 3  from each sample on, the longest candidate: at most 3 consecutive samples, at most 0.1 s (a
+//!    single sample always), on one side of the straight line between their neighbours
+//!       even      the nearest is at least half as far from the line as the farthest
+//!       returned  the neighbours differ by at most half of the nearest distance
+//!       abrupt    each neighbour differs from the sample beyond it by at most a quarter of it
+//! 4  keep rare ones: nearest distance >= 6 usual roughnesses, and >= 6 times the 90 % quantile of
+//!    the roughness of 25 samples on each side
+//! 5  keep large ones: nearest distance >= 3 logging steps and >= 1 standard deviation of the other
+//!    samples
+//! 6  no spikes if they take more than 2 % of the samples: the channel moves in pulses
 //! ```
 //!
 //! A step does not return, a test pulse lasts longer, a controller's kick rises and falls over
 //! several samples, and in vibration or in a binary sequence the neighbourhood is as rough as the
-//! candidate.
+//! candidate. False and missed spikes are counted in M14.24 of `docs/identification.md`.
 
 use gdcm_model::statistics::quantile;
 
@@ -26,29 +28,30 @@ use super::fresh_samples::FreshSamples;
 const MOST_SAMPLES: usize = 3;
 /// Longest spike with several samples \[s\].
 const LONGEST_S: f64 = 0.1;
-/// A spike's nearest sample is at least this far from the line, relative to its farthest.
+/// Minimum nearest distance relative to the farthest (*even* in step 3).
 const EVEN: f64 = 0.5;
-/// Largest difference between the neighbours, relative to the nearest distance.
+/// Largest difference between the neighbours, relative to the nearest distance (*returned*).
 const RETURNED: f64 = 0.5;
-/// The usual distance in the record is this quantile over single samples.
-const USUAL: f64 = 0.95;
-/// The usual distance nearby is this quantile over single samples.
-const USUAL_NEARBY: f64 = 0.9;
+/// Largest difference between a neighbour and the sample beyond it, relative to the nearest
+/// distance (*abrupt*).
+const ABRUPT: f64 = 0.25;
+/// Quantile for the usual roughness in the record.
+const USUAL_QUANTILE: f64 = 0.95;
+/// Quantile for the roughness nearby.
+const NEARBY_QUANTILE: f64 = 0.9;
 /// Number of samples on each side that are nearby.
 const NEARBY: usize = 25;
-/// Minimum distance at which a sample is a spike, relative to the usual distance.
-const OVER_USUAL: f64 = 6.0;
-/// Minimum distance at which a sample is a spike, in standard deviations of the other samples.
+/// Minimum nearest distance relative to the roughness (step 4).
+const RARE: f64 = 6.0;
+/// Minimum nearest distance, in standard deviations of the other samples (step 5).
 const LEAST_DEVIATIONS: f64 = 1.0;
-/// Minimum distance at which a sample is a spike, in logging steps.
-const LEAST_STEPS: f64 = 3.0;
-/// Largest difference between a neighbour and the sample beyond it, relative to the nearest
-/// distance.
-const ABRUPT: f64 = 0.25;
-/// Largest share of samples in spikes; a channel with more moves in pulses.
+/// Minimum nearest distance, in logging steps (step 5).
+const LEAST_LOG_STEPS: f64 = 3.0;
+/// Largest share of samples in spikes (step 6).
 const MOST_SHARE: f64 = 0.02;
-/// A spike's neighbours are at most this far apart, in sample times, beyond its sample count.
-const SLACK: f64 = 1.5;
+/// A candidate's neighbours are at most this far apart, in sample times, beyond its sample count;
+/// otherwise there is a gap between them.
+const GAP_TOLERANCE: f64 = 1.5;
 
 /// A channel's spikes in a record.
 #[derive(Clone, Debug, PartialEq)]
@@ -73,49 +76,48 @@ struct Candidate {
 }
 
 impl Spikes {
-    /// Finds spikes among a channel's samples in a record; `None` if there are none, or so many
-    /// that the channel moves in pulses.
+    /// Finds spikes among a channel's samples in a record (steps 1 to 6); `None` if there are none,
+    /// or so many that the channel moves in pulses.
     pub(crate) fn find(samples: Vec<Sample>) -> Option<Self> {
+        // Step 1.
         let fresh = FreshSamples::new(samples);
         let samples = &fresh.samples;
-        let distances = single_distances(samples);
-        let usual = quantile(&mut distances.clone(), USUAL);
+        // Steps 2 to 4.
+        let mut spikes = rare_candidates(&fresh);
+        // Step 5.
+        let deviation = deviation_without(samples, &spikes);
         let log_step = fresh.log_step();
-        let mut found: Vec<Candidate> = Vec::new();
-        let mut first = 1;
-        while first + 1 < samples.len() {
-            match candidate(&fresh, first) {
-                Some(candidate) if candidate.is_rare(&distances, usual) => {
-                    first += candidate.count;
-                    found.push(candidate);
-                }
-                _ => first += 1,
-            }
-        }
-        let deviation = deviation_without(samples, &found);
-        found.retain(|spike| {
-            spike.nearest >= LEAST_DEVIATIONS * deviation && spike.nearest >= LEAST_STEPS * log_step
+        spikes.retain(|spike| {
+            spike.nearest >= LEAST_DEVIATIONS * deviation
+                && spike.nearest >= LEAST_LOG_STEPS * log_step
         });
-        let spoilt: usize = found.iter().map(|spike| spike.count).sum();
-        if found.is_empty() || spoilt as f64 > MOST_SHARE * samples.len() as f64 {
+        // Step 6.
+        let count: usize = spikes.iter().map(|spike| spike.count).sum();
+        if spikes.is_empty() || count as f64 > MOST_SHARE * samples.len() as f64 {
             return None;
         }
-        let deviation = deviation_without(samples, &found);
-        let farthest = found.iter().map(|spike| spike.farthest).fold(0.0, f64::max);
-        Some(Self {
-            times_s: found
-                .iter()
-                .map(|spike| samples[spike.first].time_s)
-                .collect(),
+        Some(Self::from_candidates(&spikes, samples))
+    }
+
+    fn from_candidates(spikes: &[Candidate], samples: &[Sample]) -> Self {
+        let deviation = deviation_without(samples, spikes);
+        let farthest = spikes
+            .iter()
+            .map(|spike| spike.farthest)
+            .fold(0.0, f64::max);
+        let mut times_s = Vec::with_capacity(spikes.len());
+        let mut spans_s = Vec::with_capacity(spikes.len());
+        for spike in spikes {
+            let first_s = samples[spike.first].time_s;
+            let next_s = samples[spike.first + spike.count].time_s;
+            times_s.push(first_s);
+            spans_s.push([first_s, next_s]);
+        }
+        Self {
+            times_s,
             deviations: farthest / deviation,
-            spans_s: found
-                .iter()
-                .map(|spike| {
-                    let next = samples[spike.first + spike.count].time_s;
-                    [samples[spike.first].time_s, next]
-                })
-                .collect(),
-        })
+            spans_s,
+        }
     }
 
     /// Returns whether a stamp \[s\] is in a spike.
@@ -126,8 +128,26 @@ impl Spikes {
     }
 }
 
-/// Returns each sample's distance from the mean of its neighbours; 0 at the ends.
-fn single_distances(samples: &[Sample]) -> Vec<f64> {
+/// Finds the candidates that are rare among the samples (steps 2 to 4); they do not overlap.
+fn rare_candidates(fresh: &FreshSamples) -> Vec<Candidate> {
+    let roughness = roughness(&fresh.samples);
+    let usual = quantile(&mut roughness.clone(), USUAL_QUANTILE);
+    let mut found: Vec<Candidate> = Vec::new();
+    let mut first = 1;
+    while first + 1 < fresh.samples.len() {
+        match longest_candidate(fresh, first) {
+            Some(candidate) if candidate.is_rare(&roughness, usual) => {
+                first += candidate.count;
+                found.push(candidate);
+            }
+            _ => first += 1,
+        }
+    }
+    found
+}
+
+/// Returns each sample's distance from the mean of its neighbours (step 2); 0 at the ends.
+fn roughness(samples: &[Sample]) -> Vec<f64> {
     let mut distances = vec![0.0; samples.len()];
     for (k, near) in samples.windows(3).enumerate() {
         distances[k + 1] = (near[1].value - 0.5 * (near[0].value + near[2].value)).abs();
@@ -135,43 +155,49 @@ fn single_distances(samples: &[Sample]) -> Vec<f64> {
     distances
 }
 
-/// Returns the longest candidate that begins at a sample.
-fn candidate(fresh: &FreshSamples, first: usize) -> Option<Candidate> {
+/// Returns the longest candidate that begins at a sample (step 3).
+fn longest_candidate(fresh: &FreshSamples, first: usize) -> Option<Candidate> {
+    (1..=MOST_SAMPLES)
+        .rev()
+        .find_map(|count| candidate(fresh, first, count))
+}
+
+/// Returns the candidate with this first sample and sample count; `None` if the samples do not meet
+/// the conditions in step 3.
+fn candidate(fresh: &FreshSamples, first: usize, count: usize) -> Option<Candidate> {
     let samples = &fresh.samples;
-    for count in (1..=MOST_SAMPLES).rev() {
-        if first + count >= samples.len() {
-            continue;
-        }
-        let before = samples[first - 1];
-        let after = samples[first + count];
-        let lasts_s = after.time_s - before.time_s;
-        let is_short = count == 1 || count as f64 * fresh.sample_time_s <= LONGEST_S;
-        let has_gap = lasts_s > (count as f64 + SLACK) * fresh.sample_time_s;
-        if !is_short || has_gap || lasts_s <= 0.0 {
-            continue;
-        }
-        let mut nearest = f64::INFINITY;
-        let mut farthest = 0.0_f64;
-        let side = (samples[first].value - before.value).signum();
-        for sample in &samples[first..first + count] {
-            let share = (sample.time_s - before.time_s) / lasts_s;
-            let line = before.value + share * (after.value - before.value);
-            let distance = side * (sample.value - line);
-            nearest = nearest.min(distance);
-            farthest = farthest.max(distance);
-        }
-        let has_returned = (after.value - before.value).abs() <= RETURNED * nearest;
-        let is_abrupt = outer_step(samples, first, count) <= ABRUPT * nearest;
-        if nearest > 0.0 && nearest >= EVEN * farthest && has_returned && is_abrupt {
-            return Some(Candidate {
-                first,
-                count,
-                nearest,
-                farthest,
-            });
-        }
+    let before = samples[first - 1];
+    let after = *samples.get(first + count)?;
+    let between_s = after.time_s - before.time_s;
+    let is_short = count == 1 || count as f64 * fresh.sample_time_s <= LONGEST_S;
+    let has_gap = between_s > (count as f64 + GAP_TOLERANCE) * fresh.sample_time_s;
+    if !is_short || has_gap || between_s <= 0.0 {
+        return None;
     }
-    None
+    let mut nearest = f64::INFINITY;
+    let mut farthest = 0.0_f64;
+    let side = (samples[first].value - before.value).signum();
+    for sample in &samples[first..first + count] {
+        let share = (sample.time_s - before.time_s) / between_s;
+        let line = before.value + share * (after.value - before.value);
+        let distance = side * (sample.value - line);
+        nearest = nearest.min(distance);
+        farthest = farthest.max(distance);
+    }
+    let is_on_one_side = nearest > 0.0;
+    let is_even = nearest >= EVEN * farthest;
+    let has_returned = (after.value - before.value).abs() <= RETURNED * nearest;
+    let is_abrupt = outer_step(samples, first, count) <= ABRUPT * nearest;
+    if is_on_one_side && is_even && has_returned && is_abrupt {
+        Some(Candidate {
+            first,
+            count,
+            nearest,
+            farthest,
+        })
+    } else {
+        None
+    }
 }
 
 /// Returns the larger difference between a candidate's neighbour and the sample beyond it.
@@ -189,17 +215,18 @@ fn outer_step(samples: &[Sample], first: usize, count: usize) -> f64 {
 }
 
 impl Candidate {
-    /// Returns whether the distance is far above the usual distances in the record and nearby.
-    fn is_rare(&self, distances: &[f64], usual: f64) -> bool {
-        if self.nearest < OVER_USUAL * usual {
+    /// Returns whether the nearest distance is far above the roughness in the record and nearby
+    /// (step 4).
+    fn is_rare(&self, roughness: &[f64], usual: f64) -> bool {
+        if self.nearest < RARE * usual {
             return false;
         }
-        // A spike's neighbours are left out: they too are far from the mean of theirs.
-        let before = &distances[(self.first - 1).saturating_sub(NEARBY)..self.first - 1];
-        let last = (self.first + self.count + 1).min(distances.len());
-        let after = &distances[last..(last + NEARBY).min(distances.len())];
+        // The candidate's neighbours are left out: they are rough only because of the candidate.
+        let before = &roughness[(self.first - 1).saturating_sub(NEARBY)..self.first - 1];
+        let last = (self.first + self.count + 1).min(roughness.len());
+        let after = &roughness[last..(last + NEARBY).min(roughness.len())];
         let mut nearby = [before, after].concat();
-        nearby.is_empty() || self.nearest >= OVER_USUAL * quantile(&mut nearby, USUAL_NEARBY)
+        nearby.is_empty() || self.nearest >= RARE * quantile(&mut nearby, NEARBY_QUANTILE)
     }
 }
 

@@ -3,6 +3,9 @@
 //! A sample is valid if it is finite and not frozen and, for a slow sensor, fresh. Gaps of at most
 //! [`Preparation::longest_bridge`] samples (3 by default) are bridged, and the bridge then counts
 //! as measured. Longer gaps are left to `filled_segment`, where the missing samples remain unknown.
+//!
+//! A channel may be *shifted*: its stamps are later than its values by a stated delay, or by half a
+//! hold. It is then read between its stamps.
 
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::simulation::{FlightRecord, Signal};
@@ -44,15 +47,17 @@ pub(crate) struct ValidSamples {
     pub invalid: Vec<InvalidRun>,
     /// Samples further apart than this \[s\] have a gap between them that is not bridged.
     pub longest_step_s: f64,
+    /// The valid samples' stamps \[s\].
     times: Vec<f64>,
     values: Vec<f64>,
-    /// How much later the stamps are than the values \[s\].
+    /// How much later the stamps are than the values \[s\]; the value at `t` is read at
+    /// `t + shift_s`.
     shift_s: f64,
     /// Tolerance for a time beyond the last sample \[s\].
     rounding_s: f64,
     /// Tolerance for a time beyond the samples at a gap's ends \[s\]: rounded grid times may lie
-    /// just beyond a stamp. It is 0 for a delayed channel, which is interpolated between its
-    /// stamps, and only where both are valid.
+    /// just beyond a stamp. It is 0 for a shifted channel, which has values only between valid
+    /// stamps.
     gap_rounding_s: f64,
 }
 
@@ -66,10 +71,10 @@ impl ValidSamples {
         settings: &ChannelPreparation,
     ) -> Self {
         let is_valid = validity(&channel.values, frozen);
-        let mut places: Vec<usize> = (0..is_valid.len()).filter(|&k| is_valid[k]).collect();
+        let mut kept: Vec<usize> = (0..is_valid.len()).filter(|&k| is_valid[k]).collect();
         let mut longest_step_s = clock.longest_step_s;
         if settings.hold == Hold::FreshSamples {
-            let held_s = keep_fresh_samples(channel, clock, &mut places);
+            let held_s = keep_fresh_samples(channel, clock, &mut kept);
             longest_step_s *= (held_s / clock.sample_time_s).max(1.0);
         }
         let shift_s = settings.shift_s();
@@ -78,8 +83,8 @@ impl ValidSamples {
             signal: channel.signal.clone(),
             invalid: invalid_runs(&is_valid, frozen),
             longest_step_s,
-            times: places.iter().map(|&k| clock.times[k]).collect(),
-            values: places.iter().map(|&k| channel.values[k]).collect(),
+            times: kept.iter().map(|&k| clock.times[k]).collect(),
+            values: kept.iter().map(|&k| channel.values[k]).collect(),
             shift_s,
             rounding_s,
             gap_rounding_s: if shift_s == 0.0 { rounding_s } else { 0.0 },
@@ -103,7 +108,7 @@ pub(crate) struct SampleReader<'a> {
 }
 
 impl SampleReader<'_> {
-    /// Returns the channel's value at `t` \[s\] after the record's first stamp, with the delay
+    /// Returns the channel's value at `t` \[s\] after the record's first stamp, with the shift
     /// removed:
     ///
     /// - before the first sample, `None`
@@ -113,6 +118,7 @@ impl SampleReader<'_> {
     /// - else on the straight line between two samples
     pub fn at(&mut self, t: f64) -> Option<f64> {
         let ValidSamples { times, values, .. } = self.samples;
+        // From here on, `t` is on the scale of the stamps.
         let t = t + self.samples.shift_s;
         while times.get(self.next).is_some_and(|&time| time <= t) {
             self.next += 1;
@@ -184,14 +190,15 @@ fn invalid_runs(is_valid: &[bool], frozen: &[StampRange]) -> Vec<InvalidRun> {
     runs
 }
 
-/// Keeps only a slow sensor's fresh samples in `places`, and returns its sample time \[s\].
+/// Removes from `kept`, the indices of a slow sensor's valid samples, those that are not fresh;
+/// returns the sensor's sample time \[s\].
 ///
 /// A sample is fresh if it differs from the preceding sample, or if the sensor's sample time (the
 /// median time between changes) has passed since the last fresh sample: a sensor may read the same
 /// value twice.
-fn keep_fresh_samples(channel: &StampedValues, clock: &Clock, places: &mut Vec<usize>) -> f64 {
+fn keep_fresh_samples(channel: &StampedValues, clock: &Clock, kept: &mut Vec<usize>) -> f64 {
     let mut changes = Vec::new();
-    for pair in places.windows(2) {
+    for pair in kept.windows(2) {
         if channel.values[pair[0]] != channel.values[pair[1]] {
             changes.push(clock.times[pair[1]]);
         }
@@ -201,9 +208,9 @@ fn keep_fresh_samples(channel: &StampedValues, clock: &Clock, places: &mut Vec<u
     let held_s = median(&mut holds).max(clock.sample_time_s);
     let mut previous: Option<usize> = None;
     let mut last_fresh_s = f64::NEG_INFINITY;
-    places.retain(|&k| {
+    kept.retain(|&k| {
         let time = clock.times[k];
-        let has_changed = previous.is_none_or(|place| channel.values[place] != channel.values[k]);
+        let has_changed = previous.is_none_or(|before| channel.values[before] != channel.values[k]);
         previous = Some(k);
         let is_fresh = has_changed || time - last_fresh_s >= held_s - 0.5 * clock.sample_time_s;
         if is_fresh {

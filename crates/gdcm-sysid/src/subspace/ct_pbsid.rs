@@ -66,7 +66,7 @@ pub(crate) struct Subspace {
     /// `Gamma K`, the map to the future.
     map: DMatrix<f64>,
     /// `W`, the left singular vectors of `Gamma K Z0'`.
-    left: DMatrix<f64>,
+    left_vectors: DMatrix<f64>,
     /// The diagonal of `S`, descending.
     pub(crate) singular_values: Vec<f64>,
 }
@@ -96,7 +96,7 @@ impl Subspace {
             inputs: shape.inputs,
             factor,
             map,
-            left: decomposition.left,
+            left_vectors: decomposition.left_vectors,
             singular_values: decomposition.singular_values,
         })
     }
@@ -112,14 +112,10 @@ impl Subspace {
     /// input; as `E` is orthogonal to `[X0 U]`, it changes `Ao` and `Bo` only by rounding.
     fn model_in_k(&self, order: usize) -> Option<StateSpace> {
         let inputs = self.inputs;
-        let width = self.map.ncols();
-        let channels = self.factor.ncols() - width;
-        let outputs = channels - inputs;
+        let DataBlocks { z0, z1, u, y } = self.data_blocks();
         let to_states = self.state_map(order)?.transpose();
-        let x0 = self.factor.columns(0, width) * &to_states;
-        let x1 = self.factor.columns(channels, width) * &to_states;
-        let u = self.factor.columns(width, inputs);
-        let y = self.factor.columns(width + inputs, outputs);
+        let x0 = z0 * &to_states;
+        let x1 = z1 * &to_states;
         let regressors = side_by_side(&[x0.as_view(), u.as_view()]);
         let output_solution = least_squares(&regressors, &y.into_owned())?;
         let residual = y - &regressors * &output_solution;
@@ -132,11 +128,24 @@ impl Subspace {
         StateSpace::new(a, b, c, d).ok()
     }
 
+    /// Returns the blocks of `R` as named above.
+    fn data_blocks(&self) -> DataBlocks<'_> {
+        let past_columns = self.map.ncols();
+        let channels = self.factor.ncols() - past_columns;
+        let outputs = channels - self.inputs;
+        DataBlocks {
+            z0: self.factor.columns(0, past_columns),
+            z1: self.factor.columns(channels, past_columns),
+            u: self.factor.columns(past_columns, self.inputs),
+            y: self.factor.columns(past_columns + self.inputs, outputs),
+        }
+    }
+
     /// Computes `T = S_n^-1/2 W_n' Gamma K` (step 3); `None` if there are fewer than `order`
     /// nonzero singular values.
     fn state_map(&self, order: usize) -> Option<DMatrix<f64>> {
         let singular_values = self.singular_values.get(..order)?;
-        let mut map = self.left.columns(0, order).transpose() * &self.map;
+        let mut map = self.left_vectors.columns(0, order).transpose() * &self.map;
         for (mut row, value) in map.row_iter_mut().zip(singular_values) {
             let root = value.sqrt();
             if root == 0.0 {
@@ -146,6 +155,15 @@ impl Subspace {
         }
         Some(map)
     }
+}
+
+/// Blocks of columns in `R`: all past projections `Z0`, the same one projection later `Z1`, and the
+/// last projections of inputs and outputs.
+struct DataBlocks<'a> {
+    z0: DMatrixView<'a, f64>,
+    z1: DMatrixView<'a, f64>,
+    u: DMatrixView<'a, f64>,
+    y: DMatrixView<'a, f64>,
 }
 
 /// Step 1: computes `Theta'`, a row for each output; `None` if the regressors depend on each other.
@@ -175,17 +193,19 @@ fn map_to_future(predictor: &DMatrix<f64>, shape: SubspaceShape) -> DMatrix<f64>
 
 /// `W` and the diagonal of `S` in step 3.
 struct LeftDecomposition {
-    left: DMatrix<f64>,
+    left_vectors: DMatrix<f64>,
     singular_values: Vec<f64>,
 }
 
 /// Step 3: decomposes `Gamma K Z0'`; `None` if the iteration does not converge.
 fn decompose(factor: &DMatrix<f64>, map: &DMatrix<f64>) -> Option<LeftDecomposition> {
-    let width = map.ncols();
+    let past_columns = map.ncols();
     // (Gamma K Z0')' is tall: the transpose of its small triangular factor has the same left
-    // singular vectors and singular values as Gamma K Z0'.
+    // singular vectors and singular values as Gamma K Z0'. `R` is triangular, so that `Z0` has
+    // entries in its first rows only.
+    let z0 = factor.view((0, 0), (past_columns, past_columns));
     let mut transposed = TriangularFactor::empty(map.nrows());
-    transposed.append(&(factor.view((0, 0), (width, width)) * map.transpose()));
+    transposed.append(&(z0 * map.transpose()));
     let decomposition =
         transposed
             .matrix()
@@ -196,7 +216,7 @@ fn decompose(factor: &DMatrix<f64>, map: &DMatrix<f64>) -> Option<LeftDecomposit
         return None;
     }
     Some(LeftDecomposition {
-        left: decomposition.u?,
+        left_vectors: decomposition.u?,
         singular_values,
     })
 }

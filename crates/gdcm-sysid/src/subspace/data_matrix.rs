@@ -13,8 +13,13 @@ use gdcm_model::simulation::Segment;
 use super::laguerre::LaguerreBank;
 use super::triangular_factor::TriangularFactor;
 
+/// Delay of an all-pass filter at low frequency, times the Laguerre pole (`laguerre`).
+const ALL_PASS_DELAY: f64 = 2.0;
+/// Time after which the first filter's impulse response has decayed to 2 %, times the Laguerre
+/// pole.
+const FIRST_FILTER_DECAY: f64 = 4.0;
 /// Largest share of a segment that may be lost to the incomplete projections at its end.
-const LARGEST_END: f64 = 0.3;
+const LARGEST_INCOMPLETE_SHARE: f64 = 0.3;
 /// Number of parts whose rows are factored in parallel. Two parts keep two cores busy with three
 /// poles; merging a further part costs as much as a 6 s segment.
 const PARTS: usize = 2;
@@ -50,9 +55,9 @@ impl Projections {
             .column_iter()
             .chain(segment.outputs.column_iter());
         for (channel, signal) in signals.enumerate() {
-            let end = signal.iter().next_back().copied().unwrap_or_default();
-            let signal: Vec<f64> = signal.iter().map(|sample| sample - end).collect();
-            let projections = bank.projections(&signal, self.past);
+            let last = signal.iter().next_back().copied().unwrap_or_default();
+            let ending_at_zero: Vec<f64> = signal.iter().map(|sample| sample - last).collect();
+            let projections = bank.projections(&ending_at_zero, self.past);
             for (k, projection) in projections.column_iter().enumerate() {
                 // Block k holds all channels' projections z_k.
                 let mut column = rows.column_mut(k * channels + channel);
@@ -68,10 +73,12 @@ impl Projections {
     fn instants(&self, segment: &Segment) -> Vec<usize> {
         let samples = segment.inputs.nrows();
         let duration = samples as f64 * segment.sample_time_s;
-        let end = ((2.0 * self.past as f64 + 4.0) / self.pole).min(LARGEST_END * duration);
+        let incomplete_s = ((ALL_PASS_DELAY * self.past as f64 + FIRST_FILTER_DECAY) / self.pole)
+            .min(LARGEST_INCOMPLETE_SHARE * duration);
         let step = ((self.spacing_s / segment.sample_time_s).round() as usize).max(1);
-        let last = samples.saturating_sub((end / segment.sample_time_s).ceil() as usize);
-        (0..last).step_by(step).collect()
+        let complete =
+            samples.saturating_sub((incomplete_s / segment.sample_time_s).ceil() as usize);
+        (0..complete).step_by(step).collect()
     }
 
     /// Computes the triangular factor of the data matrix over all segments.

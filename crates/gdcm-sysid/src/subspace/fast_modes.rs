@@ -1,5 +1,5 @@
 //! Removes modes far above the band, but keeps their static gain: such modes are images of the
-//! Laguerre filters (M14.3).
+//! Laguerre filters, whose poles are within the band (M14.3).
 //!
 //! ```text
 //! (A, B, C, D) the model; a mode is fast if its eigenvalue has a modulus above the limit
@@ -15,7 +15,8 @@ use nalgebra::{Complex, DMatrix, DVector, Dyn, SymmetricEigen};
 use gdcm_model::dataset::StateSpace;
 use gdcm_model::response::schur_form::SchurForm;
 
-/// Removes the modes with `|lambda| > limit` \[rad/s\]; the response at omega = 0 does not change.
+/// Removes the modes with `|lambda| > limit` \[rad/s\], eight times the upper end of the band; the
+/// response at omega = 0 does not change.
 ///
 /// Returns `None` if an iteration does not converge, if fast and slow modes cannot be separated, or
 /// if no mode is slow.

@@ -44,8 +44,8 @@ impl LaguerreBank {
         let mut projections = DMatrix::zeros(samples, past + 1);
         self.first_filter(signal, &mut projections.as_mut_slice()[..samples]);
         for k in 1..=past {
-            let (done, rest) = projections.as_mut_slice().split_at_mut(k * samples);
-            self.all_pass(&done[(k - 1) * samples..], &mut rest[..samples]);
+            let (filtered, remaining) = projections.as_mut_slice().split_at_mut(k * samples);
+            self.all_pass(&filtered[(k - 1) * samples..], &mut remaining[..samples]);
         }
         projections
     }

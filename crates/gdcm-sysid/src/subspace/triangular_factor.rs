@@ -83,9 +83,11 @@ impl TriangularFactor {
     ) -> DMatrix<f64> {
         let mut t = DMatrix::zeros(width, width);
         for j in 0..width {
+            // Step 1.
             let column = first + j;
             let below = rows.column(column).norm();
             if below == 0.0 {
+                // Already triangular: tau = 0, no reflection.
                 continue;
             }
             let diagonal = self.0[(column, column)];
@@ -94,15 +96,16 @@ impl TriangularFactor {
             let tau = (beta - diagonal) / beta;
             self.0[(column, column)] = beta;
             let (v, mut later) = rows.columns_range_pair_mut(column, column + 1..first + width);
-            for (k, mut other) in later.column_iter_mut().enumerate() {
-                let entry = &mut self.0[(column, column + 1 + k)];
-                let w = tau * (*entry + v.dot(&other));
-                *entry -= w;
-                other.axpy(-w, &v, 1.0);
+            for (k, mut later_column) in later.column_iter_mut().enumerate() {
+                let upper_entry = &mut self.0[(column, column + 1 + k)];
+                let w = tau * (*upper_entry + v.dot(&later_column));
+                *upper_entry -= w;
+                later_column.axpy(-w, &v, 1.0);
             }
-            let products =
+            // Step 2.
+            let v_products =
                 DVector::from_fn(j, |k, _| rows.column(first + k).dot(&rows.column(column)));
-            let above = t.view((0, 0), (j, j)) * products * -tau;
+            let above = t.view((0, 0), (j, j)) * v_products * -tau;
             t.view_mut((0, j), (j, 1)).copy_from(&above);
             t[(j, j)] = tau;
         }
@@ -136,10 +139,10 @@ pub(crate) fn ridge_solution(
         rows.fill_diagonal(ridge.sqrt());
         stacked.append(&rows);
     }
-    let targets = factor.ncols() - regressors;
+    let right_sides = factor.ncols() - regressors;
     let mut solution = stacked
         .0
-        .view((0, regressors), (regressors, targets))
+        .view((0, regressors), (regressors, right_sides))
         .into_owned();
     let is_solved = stacked
         .0

@@ -3,6 +3,10 @@
 //! Couplings are two constant matrices around the physics model H: a mixing M of the inputs u and a
 //! feedback K of the outputs y to the inputs, `y = H (M u + K y)`. They are fitted in five solves
 //! with improving weights.
+//!
+//! In the reference, `renovated` is H with M and K as matrices A to D, and `toy` a synthetic
+//! aircraft at several airspeeds: its physics `H`, its flight responses `R_disturbed` with errors,
+//! the standard deviations `sd` of `ln R` at each frequency, and the marks `on_axis`.
 
 use std::sync::Arc;
 
@@ -19,7 +23,7 @@ use gdcm_model::executor::Sequential;
 use gdcm_model::progress::Unobserved;
 
 use crate::check::{CheckFault, Found};
-use crate::reference::MIXING;
+use crate::reference::{MIXING, Reference};
 use crate::reference_study::ReferenceStudy;
 
 /// Airspeed at which constant couplings are evaluated \[kt\].
@@ -45,15 +49,15 @@ pub(super) fn coupled_state_space(_: &mut ReferenceStudy) -> Result<Found, Check
         .map_err(CheckFault::no_result)?;
     let mut found = Found::default();
     found.instance();
-    let own = [coupled.a(), coupled.b(), coupled.c(), coupled.d()];
-    for (own, expected) in own.into_iter().zip(case.list("renovated")?) {
+    let matrices = [coupled.a(), coupled.b(), coupled.c(), coupled.d()];
+    for (matrix, expected) in matrices.into_iter().zip(case.list("renovated")?) {
         let expected = expected.as_matrix()?;
-        if own.shape() != expected.shape() {
+        if matrix.shape() != expected.shape() {
             found.agree(false);
             continue;
         }
-        for (own, expected) in own.iter().zip(expected.iter()) {
-            found.deviation(own - expected);
+        for (entry, expected_entry) in matrix.iter().zip(expected.iter()) {
+            found.deviation(entry - expected_entry);
         }
     }
     Ok(found)
@@ -88,48 +92,7 @@ fn constant_couplings(
 /// Compares the synthetic aircraft's coupling coefficients after each solve with the reference.
 pub(super) fn disturbed_aircraft(_: &mut ReferenceStudy) -> Result<Found, CheckFault> {
     let aircraft = MIXING.read()?.member("toy")?;
-    let omega: Arc<[f64]> = aircraft.numbers("omega_rad_s")?.into();
-    let mut at_frequencies = Vec::new();
-    for matrix in aircraft.list("sd")? {
-        at_frequencies.push(matrix.as_matrix()?);
-    }
-    let on_axis = aircraft.list("on_axis")?;
-    let outputs = on_axis.len();
-    let inputs = at_frequencies.first().map_or(0, DMatrix::ncols);
-    let deviation = PairTable::from_fn(outputs, inputs, |pair: Pair| {
-        let mut curve = Vec::with_capacity(at_frequencies.len());
-        for matrix in &at_frequencies {
-            curve.push(matrix[(pair.output, pair.input)]);
-        }
-        curve
-    });
-    let mut marked = PairTable::filled(outputs, inputs, false);
-    for (output, row) in on_axis.iter().enumerate() {
-        for (input, mark) in row.elements()?.iter().enumerate() {
-            marked[Pair::new(output, input)] = mark.as_flag()?;
-        }
-    }
-    let physics = aircraft.list("H")?;
-    let flight = aircraft.list("R_disturbed")?;
-    let mut conditions = Vec::new();
-    for (index, airspeed_kt) in aircraft.numbers("airspeeds_kt")?.into_iter().enumerate() {
-        conditions.push(CouplingCondition {
-            id: ConditionId(index as i64 + 1),
-            airspeed_kt,
-            physics: Arc::new(physics[index].as_response()?),
-            flight: flight[index].as_response()?,
-            usable: PairTable::filled(outputs, inputs, true),
-            deviation: Some(deviation.clone()),
-            coherence: None,
-        });
-    }
-    let problem = CouplingProblem {
-        kind: CouplingKind::MixingAndFeedback,
-        on_axis: marked,
-        conditions,
-        omega,
-        options: CouplingOptions::default(),
-    };
+    let problem = coupling_problem(&aircraft)?;
     let fit = fit_couplings(&problem, &Sequential, &Unobserved).map_err(CheckFault::no_result)?;
     let solves = aircraft
         .member("disturbed")?
@@ -141,4 +104,65 @@ pub(super) fn disturbed_aircraft(_: &mut ReferenceStudy) -> Result<Found, CheckF
         found.all_scaled(own, &expected.as_numbers()?, 1.0);
     }
     Ok(found)
+}
+
+/// Reads the fit of mixing and feedback to the disturbed flight responses; each airspeed is a
+/// condition.
+fn coupling_problem(aircraft: &Reference) -> Result<CouplingProblem, CheckFault> {
+    let on_axis = on_axis_marks(aircraft)?;
+    let deviation = standard_deviations(aircraft)?;
+    let usable = PairTable::filled(on_axis.outputs(), on_axis.inputs(), true);
+    let physics = aircraft.list("H")?;
+    let flight = aircraft.list("R_disturbed")?;
+    let mut conditions = Vec::new();
+    for (index, airspeed_kt) in aircraft.numbers("airspeeds_kt")?.into_iter().enumerate() {
+        conditions.push(CouplingCondition {
+            id: ConditionId(index as i64 + 1),
+            airspeed_kt,
+            physics: Arc::new(physics[index].as_response()?),
+            flight: flight[index].as_response()?,
+            usable: usable.clone(),
+            deviation: Some(deviation.clone()),
+            coherence: None,
+        });
+    }
+    Ok(CouplingProblem {
+        kind: CouplingKind::MixingAndFeedback,
+        on_axis,
+        conditions,
+        omega: aircraft.numbers("omega_rad_s")?.into(),
+        options: CouplingOptions::default(),
+    })
+}
+
+/// Reads the standard deviation of `ln R` over frequency for each response.
+fn standard_deviations(aircraft: &Reference) -> Result<PairTable<Vec<f64>>, CheckFault> {
+    let mut at_frequencies: Vec<DMatrix<f64>> = Vec::new();
+    for matrix in aircraft.list("sd")? {
+        at_frequencies.push(matrix.as_matrix()?);
+    }
+    let (outputs, inputs) = at_frequencies.first().map_or((0, 0), DMatrix::shape);
+    Ok(PairTable::from_fn(outputs, inputs, |pair: Pair| {
+        let mut curve = Vec::with_capacity(at_frequencies.len());
+        for matrix in &at_frequencies {
+            curve.push(matrix[(pair.output, pair.input)]);
+        }
+        curve
+    }))
+}
+
+/// Reads which responses are on-axis.
+fn on_axis_marks(aircraft: &Reference) -> Result<PairTable<bool>, CheckFault> {
+    let rows = aircraft.list("on_axis")?;
+    let inputs = match rows.first() {
+        Some(row) => row.elements()?.len(),
+        None => 0,
+    };
+    let mut on_axis = PairTable::filled(rows.len(), inputs, false);
+    for (output, row) in rows.iter().enumerate() {
+        for (input, mark) in row.elements()?.iter().enumerate() {
+            on_axis[Pair::new(output, input)] = mark.as_flag()?;
+        }
+    }
+    Ok(on_axis)
 }

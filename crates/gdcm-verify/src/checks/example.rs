@@ -3,7 +3,13 @@
 //!
 //! In the reference, G and D are the gain and the delay that would match a single response (M6),
 //! `k` and `tau` those of the channels (M8, M9) within their bounds `lb` and `ub` (M7), and J is
-//! the cost, the distance between two responses (M4).
+//! the cost, the distance between two responses (M4). A result is *matched* if every held response
+//! gets its G or D.
+//!
+//! A model's *score* is its mean distance to the other models of its bundle; the model with the
+//! lowest score represents the bundle. Its *discontinuity ratio* is its distance to models at other
+//! trims, relative to the distance that the trims explain; a model with a large ratio is a
+//! suggested outlier (M5).
 
 use gdcm_model::dataset::{BundleKind, ConditionId, PairTable};
 use gdcm_study::ConditionAnalysis;
@@ -57,6 +63,7 @@ fn compare_table<T>(
     }
 }
 
+/// Compares representatives, suggested outliers, scores and discontinuity ratios.
 pub(super) fn representatives(study: &mut ReferenceStudy) -> Result<Found, CheckFault> {
     each_condition(study, |found, result, expected| {
         let physics = result.representative_name(BundleKind::Physics);
@@ -84,6 +91,7 @@ pub(super) fn representatives(study: &mut ReferenceStudy) -> Result<Found, Check
     })
 }
 
+/// Compares G, D and the bounds.
 pub(super) fn deltas(study: &mut ReferenceStudy) -> Result<Found, CheckFault> {
     each_condition(study, |found, result, expected| {
         let delta = &result.comparison.delta;
@@ -109,6 +117,8 @@ pub(super) fn deltas(study: &mut ReferenceStudy) -> Result<Found, CheckFault> {
     })
 }
 
+/// Compares the channels' gains and delays, the minima of their objectives, and whether the held
+/// responses are matched.
 pub(super) fn corrections(study: &mut ReferenceStudy) -> Result<Found, CheckFault> {
     each_condition(study, |found, result, expected| {
         let own = &result.correction;
@@ -126,6 +136,7 @@ pub(super) fn corrections(study: &mut ReferenceStudy) -> Result<Found, CheckFaul
     })
 }
 
+/// Compares the magnitude and the phase part of J, before and after the correction.
 pub(super) fn costs(study: &mut ReferenceStudy) -> Result<Found, CheckFault> {
     each_condition(study, |found, result, expected| {
         for (index, magnitude) in expected.list("J_mag")?.iter().enumerate() {
@@ -138,6 +149,7 @@ pub(super) fn costs(study: &mut ReferenceStudy) -> Result<Found, CheckFault> {
     })
 }
 
+/// Part of J.
 #[derive(Clone, Copy)]
 enum Part {
     Magnitude,
@@ -172,6 +184,7 @@ fn compare_costs(
     Ok(())
 }
 
+/// Compares the scheduled gains, and the changes of J that they cause in the nominal model.
 pub(super) fn assessment(study: &mut ReferenceStudy) -> Result<Found, CheckFault> {
     let analysis = study.analysis()?;
     let schedule = analysis.schedule.as_ref().map_err(CheckFault::no_result)?;

@@ -15,12 +15,13 @@ use crate::reference_study::ReferenceStudy;
 /// Phase weight `W_p` as in the paper (M4).
 const PHASE_WEIGHT: f64 = 0.0175;
 
-/// Compares J for pure gains and pure delays with its closed form.
+/// Compares J for a gain k with a delay tau with its closed form, which has a magnitude and a phase
+/// part: `J = 20 (20 log10 k)^2 + 20 W_p average((omega tau)^2)`, omega tau in degrees.
 pub(super) fn cost_of_gain_and_delay(_: &mut ReferenceStudy) -> Result<Found, CheckFault> {
     let band = Band::new(0.5, 12.0).map_err(CheckFault::no_result)?;
     let grid = FrequencyGrid::logarithmic(band, 200);
     let omega = grid.omega();
-    let middle_square = middle_of_rising(omega, |omega| omega * omega);
+    let median_square = median_of_rising(omega, |omega| omega * omega);
     let mean_square = omega.iter().map(|omega| omega * omega).sum::<f64>() / omega.len() as f64;
     let mut found = Found::default();
     for gain in [0.5_f64, 0.9, 1.3] {
@@ -29,8 +30,8 @@ pub(super) fn cost_of_gain_and_delay(_: &mut ReferenceStudy) -> Result<Found, Ch
             let error_db = 20.0 * gain.log10();
             let magnitude = 20.0 * error_db * error_db;
             let slope_deg = f64::to_degrees(delay_s);
-            for (average, square) in [
-                (CostAverage::Median, middle_square),
+            for (average, average_square) in [
+                (CostAverage::Median, median_square),
                 (CostAverage::Mean, mean_square),
             ] {
                 let cost = Cost::from_errors(
@@ -39,7 +40,7 @@ pub(super) fn cost_of_gain_and_delay(_: &mut ReferenceStudy) -> Result<Found, Ch
                     None,
                     average,
                 );
-                let phase = 20.0 * PHASE_WEIGHT * slope_deg * slope_deg * square;
+                let phase = 20.0 * PHASE_WEIGHT * slope_deg * slope_deg * average_square;
                 found.relative(cost.magnitude, magnitude);
                 found.relative(cost.phase, phase);
                 found.relative(cost.total(), magnitude + phase);
@@ -50,7 +51,7 @@ pub(super) fn cost_of_gain_and_delay(_: &mut ReferenceStudy) -> Result<Found, Ch
 }
 
 /// Returns the median over frequency of a rising function, for an even frequency count.
-fn middle_of_rising(omega: &[f64], function: fn(f64) -> f64) -> f64 {
+fn median_of_rising(omega: &[f64], function: fn(f64) -> f64) -> f64 {
     let half = omega.len() / 2;
     0.5 * (function(omega[half - 1]) + function(omega[half]))
 }

@@ -48,6 +48,7 @@ fn record(truth: &StateSpace, number: usize) -> Result<FlightRecord, CheckFault>
             let size = if input == number % 2 { 0.3 } else { 0.09 };
             let mut sum = 0.0;
             for line in 0..LINES {
+                // Each input and record has frequencies of its own.
                 let omega = 0.25 + 0.2 * line as f64 + 0.01 * (input + 2 * number) as f64;
                 // Phases by the golden ratio are spread evenly and need no random numbers.
                 let turns = 0.618_033_988_75 * (line * line + 7 * input + 13 * number) as f64;
@@ -75,6 +76,7 @@ pub(super) fn known_model(_: &mut ReferenceStudy) -> Result<Found, CheckFault> {
     for number in 0..RECORDS {
         records.push(record(&truth, number)?);
     }
+    // A short search: the true order and two above, and a single Laguerre pole and past window.
     let options = Options {
         orders: Some(vec![4, 6, 8]),
         poles: vec![0.54],

@@ -3,6 +3,10 @@
 //! A channel's delay may be negative: a lead, which a filter gives that rises above the band. Its
 //! *band delay* is the delay that fits its phase in the band best, and the *lead time* is its lead
 //! at low frequency.
+//!
+//! A problem seeks channel delays whose sums match the delays D of the *fitted* responses, exactly
+//! for the *held* ones (`on` in the reference). A solution is not `matched` if the bounds do not
+//! allow this; the held responses are then held at the nearest feasible delays.
 
 use gdcm_method::correction::lead_design::{LeadDesign, LeadSettings};
 use gdcm_method::correction::{Bounds, Outcome, Problem};
@@ -16,10 +20,15 @@ use crate::reference_study::ReferenceStudy;
 
 /// Smallest time that matters \[s\].
 const TIME_SCALE_S: f64 = 1e-3;
+/// Maximum gain of a filter far above the band (`R_max`), as in the reference.
+const GREATEST_GAIN: f64 = 10.0;
+/// Number of frequencies in the band, as in the reference.
+const FREQUENCIES: usize = 200;
 
+/// Returns the lead design with the order and the pole of a reference entry.
 fn design(entry: &Reference) -> Result<LeadDesign, CheckFault> {
     let band = Band::new(0.5, 12.0).map_err(CheckFault::no_result)?;
-    let grid = FrequencyGrid::logarithmic(band, 200);
+    let grid = FrequencyGrid::logarithmic(band, FREQUENCIES);
     let order = match entry.integer("order")? {
         1 => LeadOrder::First,
         _ => LeadOrder::Second,
@@ -27,7 +36,7 @@ fn design(entry: &Reference) -> Result<LeadDesign, CheckFault> {
     let settings = LeadSettings {
         order,
         pole: entry.number("pole")?,
-        limit: 10.0,
+        limit: GREATEST_GAIN,
     };
     Ok(LeadDesign::new(settings, grid.omega().into()))
 }
@@ -67,7 +76,7 @@ pub(super) fn filters(_: &mut ReferenceStudy) -> Result<Found, CheckFault> {
 
 /// Compares minima for signed delays with the reference; a minimum disagrees if it is not proven,
 /// or if it differs on whether the held delays are feasible.
-pub(super) fn programs(_: &mut ReferenceStudy) -> Result<Found, CheckFault> {
+pub(super) fn signed_delays(_: &mut ReferenceStudy) -> Result<Found, CheckFault> {
     let mut found = Found::default();
     for entry in LEADS.read()?.list("programs")? {
         let delta = entry.table("D_s")?.map(|_, delay_s| Some(*delay_s));

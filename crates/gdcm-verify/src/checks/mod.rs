@@ -205,7 +205,7 @@ pub const CHECKS: &[Check] = &[
         measure: "relative deviation of the objective",
         tolerance: 1e-6,
         reason: "alpha = 0 is approximated by a small alpha in the reference",
-        run: leads::programs,
+        run: leads::signed_delays,
     },
     Check {
         code: "coupled-state-space",

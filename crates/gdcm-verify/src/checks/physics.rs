@@ -1,7 +1,12 @@
 //! Named physics parameters (M18: `docs/physics.md`).
 //!
 //! A *run* is the physics model linearised anew with one parameter moved; z is a parameter's change
-//! over its plausible standard deviation. The fit is repeated in *passes*.
+//! over its plausible standard deviation. The *increments* are the changes of the matrices from the
+//! base model to the runs, the *family* all models between and beyond them as functions of z. The
+//! fit of all z to flight is repeated in *passes*.
+//!
+//! In the reference, `toy` is a synthetic aircraft with the flight responses `R`, `s2` the squared
+//! misfit before a pass and `tau` the channels' delays, outputs before inputs.
 
 use std::sync::Arc;
 
@@ -29,6 +34,30 @@ struct Run {
     model: StateSpace,
 }
 
+impl Run {
+    fn step_from<'a>(&'a self, base: &'a StateSpace) -> RunStep<'a> {
+        RunStep {
+            z: self.z,
+            base,
+            run: &self.model,
+        }
+    }
+}
+
+/// Reads a parameter's runs in a condition.
+fn runs_of_parameter(parameter: &str, condition: &Reference) -> Result<Vec<Run>, CheckFault> {
+    let mut runs = Vec::new();
+    for run in condition.list("runs")? {
+        if run.text("parameter")? == parameter {
+            runs.push(Run {
+                z: run.number("z")?,
+                model: state_space(&run.member("matrices")?)?,
+            });
+        }
+    }
+    Ok(runs)
+}
+
 /// Reads a model stored as `[A, B, C, D]`.
 fn state_space(value: &Reference) -> Result<StateSpace, CheckFault> {
     let matrices = value.elements()?;
@@ -51,35 +80,18 @@ fn condition(
     flight: FrequencyResponse,
 ) -> Result<PhysicsCondition, CheckFault> {
     let base = state_space(&value.member("base")?)?;
-    let mut runs: Vec<Vec<Run>> = Vec::new();
+    let mut runs_by_parameter: Vec<Vec<Run>> = Vec::new();
     for parameter in PARAMETERS {
-        let mut of_parameter = Vec::new();
-        for run in value.list("runs")? {
-            if run.text("parameter")? == parameter {
-                of_parameter.push(Run {
-                    z: run.number("z")?,
-                    model: state_space(&run.member("matrices")?)?,
-                });
-            }
-        }
-        runs.push(of_parameter);
+        runs_by_parameter.push(runs_of_parameter(parameter, value)?);
     }
-    // The steps borrow the models read above.
-    let mut steps: Vec<Vec<RunStep<'_>>> = Vec::new();
-    for runs in &runs {
-        let mut of_parameter = Vec::new();
-        for run in runs {
-            of_parameter.push(RunStep {
-                z: run.z,
-                base: &base,
-                run: &run.model,
-            });
-        }
-        steps.push(of_parameter);
+    let mut steps_by_parameter: Vec<Vec<RunStep<'_>>> = Vec::new();
+    for runs in &runs_by_parameter {
+        steps_by_parameter.push(runs.iter().map(|run| run.step_from(&base)).collect());
     }
     let origin = Origin::Nominal { perturbation: None };
     let model = Model::new("nominal", origin, Dynamics::StateSpace(base.clone()));
-    let increments = ConditionIncrements::new(&model, &steps).map_err(CheckFault::no_result)?;
+    let increments =
+        ConditionIncrements::new(&model, &steps_by_parameter).map_err(CheckFault::no_result)?;
     let Some(family) = ModelFamily::from_matrices(&model, &increments) else {
         return Err(CheckFault::no_result("the runs do not fit the model"));
     };

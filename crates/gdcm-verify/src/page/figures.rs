@@ -1,4 +1,5 @@
-//! Figures that tests record for the page `docs/verification.md`, one JSON line each.
+//! Figures that tests record for the page `docs/verification.md`, one JSON line each: deviations
+//! from independent values, or the coverage of confidence intervals.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;

@@ -73,8 +73,19 @@ const NOT_VERIFIED: &str = "
 /// [`FigureFault::Missing`] if a row has no figure.
 pub fn page_text(figures: &Figures) -> Result<String, FigureFault> {
     let mut text = HEAD.to_owned();
+    text.push_str(&comparisons(figures)?);
+    text.push_str(&certified_optima(figures)?);
+    text.push_str(&interval_coverage(figures)?);
+    text.push_str(&evidence_by_section());
+    text.push_str(PEERS);
+    text.push_str(NOT_VERIFIED);
+    Ok(text)
+}
+
+/// Tabulates the comparisons that `gdcm verify` makes, then those that only tests make.
+fn comparisons(figures: &Figures) -> Result<String, FigureFault> {
     let rows = evidence_rows();
-    text.push_str("\n## Comparisons of gdcm verify\n\n");
+    let mut text = "\n## Comparisons of gdcm verify\n\n".to_owned();
     text.push_str(EVIDENCE_HEAD);
     for row in rows.iter().filter(|row| row.is_verified) {
         text.push_str(&evidence_line(row, deviations(figures, row.code)?));
@@ -85,7 +96,12 @@ pub fn page_text(figures: &Figures) -> Result<String, FigureFault> {
     for row in rows.iter().filter(|row| !row.is_verified) {
         text.push_str(&evidence_line(row, deviations(figures, row.code)?));
     }
-    text.push_str("\n## Certified optima\n\n");
+    Ok(text)
+}
+
+/// Tabulates the deviations from certified optima.
+fn certified_optima(figures: &Figures) -> Result<String, FigureFault> {
+    let mut text = "\n## Certified optima\n\n".to_owned();
     text.push_str(
         "| code | instances | worst relative deviation of the objective |\n|---|---|---|\n",
     );
@@ -102,7 +118,12 @@ pub fn page_text(figures: &Figures) -> Result<String, FigureFault> {
         "\nEvery minimum of eq. (7) in these instances is also proven by the program itself, to a \
          relative\ngap of 1e-9.\n",
     );
-    text.push_str("\n## Coverage of intervals\n\n");
+    Ok(text)
+}
+
+/// Tabulates the coverages, and lists the populations in which they were measured.
+fn interval_coverage(figures: &Figures) -> Result<String, FigureFault> {
+    let mut text = "\n## Coverage of intervals\n\n".to_owned();
     text.push_str(
         "| code | section | intervals | nominal | covered | seeds | test |\n|---|---|---|---|---|---|---|\n",
     );
@@ -122,7 +143,12 @@ pub fn page_text(figures: &Figures) -> Result<String, FigureFault> {
         "\nMore populations: [uncertainty.md](uncertainty.md#measured-coverage), \
          [physics.md](physics.md#m187-limits).\n",
     );
-    text.push_str("\n## By section\n\n| section | evidence |\n|---|---|\n");
+    Ok(text)
+}
+
+/// Tabulates, for each method section, the codes of the figures that test it, and other tests.
+fn evidence_by_section() -> String {
+    let mut text = "\n## By section\n\n| section | evidence |\n|---|---|\n".to_owned();
     for section in SECTIONS {
         let mut parts: Vec<String> = Vec::new();
         for code in section.codes {
@@ -140,9 +166,7 @@ pub fn page_text(figures: &Figures) -> Result<String, FigureFault> {
             parts.join(", ")
         );
     }
-    text.push_str(PEERS);
-    text.push_str(NOT_VERIFIED);
-    Ok(text)
+    text
 }
 
 const EVIDENCE_HEAD: &str = "\

@@ -9,7 +9,7 @@ use gdcm_model::number_format::five_digits;
 use gdcm_model::units::{number, s_to_ms};
 
 use super::deltas::{delays_ms, gain_ratios};
-use super::sample_words::spread;
+use super::sample_words::range_words;
 use super::{Context, Derivation};
 
 /// Collects the mismatches in the on-axis responses, or in all responses if none is on-axis or no
@@ -55,7 +55,7 @@ pub(super) fn gain_bounds(context: &Context<'_>) -> Derivation {
             .into_iter()
             .flat_map(gain_ratios)
             .collect();
-        let pool = spread(&pool);
+        let pool = range_words(&pool);
         let low = percent(quantile);
         let high = percent(1.0 - quantile);
         (
@@ -92,7 +92,7 @@ pub(super) fn delay_bound(context: &Context<'_>) -> Derivation {
         (
             format!(
                 "UB = max(0, {high} % quantile of {}) = {upper} ms",
-                spread(&pool)
+                range_words(&pool)
             ),
             pool_rests_on(context),
         )

@@ -13,7 +13,7 @@ use super::{Context, Derivation};
 use crate::leads::servo_words;
 use crate::solution_details::proof_text;
 
-/// An objective as an equation, with its value's unit.
+/// An objective as an equation, and how its value is displayed.
 struct Objective {
     equation: &'static str,
     /// The displayed value's unit, with a leading space; empty without a unit.
@@ -103,7 +103,8 @@ pub(super) fn net_delay(context: &Context<'_>, pair: Pair) -> Derivation {
     }
 }
 
-/// Describes whether a response is constrained, and its delta gain or delay.
+/// Describes whether a response is constrained, and its delta gain or delay `delta`, the value that
+/// it needs; a delay in ms.
 fn constraint_words(
     context: &Context<'_>,
     pair: Pair,
@@ -192,7 +193,7 @@ pub(super) fn gain_objective(context: &Context<'_>) -> Derivation {
         problem: &context.result.gain_problem,
         solution: &context.result.gains,
     };
-    optimum.objective(&Objective::of_gains(context))
+    optimum.objective_derivation(&Objective::of_gains(context))
 }
 
 /// Derives the objective that the delays minimise.
@@ -203,7 +204,7 @@ pub(super) fn delay_objective(context: &Context<'_>) -> Derivation {
         problem,
         solution: &context.result.delays,
     };
-    optimum.objective(&Objective::of_delays(problem))
+    optimum.objective_derivation(&Objective::of_delays(problem))
 }
 
 /// A condition's gain or delay problem, with its solution.
@@ -215,8 +216,8 @@ struct Optimum<'a> {
 
 impl Optimum<'_> {
     /// Lists the constrained products or sums that contain the channel, then its bounds with
-    /// `result` between them: the channel's name and value.
-    fn steps(&self, channel: Channel, result: &str) -> Vec<String> {
+    /// `name_and_value` between them: "k_LON = 1.0124".
+    fn steps(&self, channel: Channel, name_and_value: &str) -> Vec<String> {
         let is_gain = self.problem.quantity.is_gain();
         let (unit, scale) = if is_gain { ("", 1.0) } else { (" ms", 1e3) };
         let mut steps = Vec::new();
@@ -227,13 +228,13 @@ impl Optimum<'_> {
             }
             let [output, input] =
                 Channel::of_pair(pair).map(|channel| self.context.channel(channel));
-            let sum = if is_gain {
+            let product_or_sum = if is_gain {
                 format!("k_{output} k_{input}")
             } else {
                 format!("τ_{output} + τ_{input}")
             };
             steps.push(format!(
-                "{sum} = {}{unit} (held)",
+                "{product_or_sum} = {}{unit} (held)",
                 five_digits(scale * target)
             ));
         }
@@ -247,7 +248,7 @@ impl Optimum<'_> {
             ""
         };
         steps.push(format!(
-            "{} ≤ {result} ≤ {}{unit}{place}",
+            "{} ≤ {name_and_value} ≤ {}{unit}{place}",
             five_digits(scale * bounds.lower),
             five_digits(scale * bounds.upper)
         ));
@@ -273,7 +274,7 @@ impl Optimum<'_> {
     }
 
     /// Derives the objective's value: fit term plus regularisation term.
-    fn objective(&self, objective: &Objective) -> Derivation {
+    fn objective_derivation(&self, objective: &Objective) -> Derivation {
         let Objective { unit, scale, .. } = *objective;
         let value = scale * self.solution.objective;
         let without_alpha = Problem {

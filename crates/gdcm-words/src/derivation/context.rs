@@ -41,8 +41,8 @@ impl<'a> Context<'a> {
     }
 
     /// Returns a title from a result's name: "net gain of LON → Q, condition 3".
-    pub(super) fn title(&self, figure: &str) -> String {
-        format!("{figure}, condition {}", self.result.condition.id())
+    pub(super) fn title(&self, result_name: &str) -> String {
+        format!("{result_name}, condition {}", self.result.condition.id())
     }
 
     /// Returns the mismatch between the two representatives in a response, without leads; `None` if

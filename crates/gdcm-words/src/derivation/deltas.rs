@@ -1,6 +1,10 @@
 //! Derives delta gain G and delta delay D (M6). They are the gain and the delay that would match a
-//! response of the physics representative `H_sim` to that of the identified one, `H_ref`. Each is a
-//! [`Derivation`]: the equation, the same with numbers, and what the result rests on, as texts.
+//! response of the physics representative `H_sim` to that of the identified one, `H_ref`; Δφ is the
+//! phase of `H_sim` less that of `H_ref`. Each is a [`Derivation`]: the equation, the same with
+//! numbers, and what the result rests on, as texts.
+//!
+//! With lead filters `L_o` and `L_i`, `H_sim` is *compensated* by them before G is found (M15.5).
+//! The *band delay* is the slope of a straight line through Δφ over the band (M15.2).
 
 use gdcm_method::correction::delta::GainSource;
 use gdcm_method::fidelity::Mismatch;
@@ -8,7 +12,7 @@ use gdcm_model::dataset::{BundleKind, Pair};
 use gdcm_model::number_format::{counted, five_digits};
 use gdcm_model::units::{db_to_ratio, s_to_ms};
 
-use super::sample_words::{median_words, spread};
+use super::sample_words::{median_words, range_words};
 use super::{Context, Derivation};
 
 /// Returns `|H_ref| / |H_sim|` at each frequency.
@@ -20,7 +24,8 @@ pub(super) fn gain_ratios(mismatch: &Mismatch) -> Vec<f64> {
         .collect()
 }
 
-/// Returns `Δφ/ω` \[ms\] at each frequency, on the phase branch of M6b.
+/// Returns `Δφ/ω` \[ms\] at each frequency, with Δφ on the turn nearest to the best-fitting pure
+/// delay (M6b).
 pub(super) fn delays_ms(mismatch: &Mismatch, omega: &[f64]) -> Vec<f64> {
     let phases = mismatch.phase_difference(omega);
     phases
@@ -34,7 +39,7 @@ pub(super) fn delays_ms(mismatch: &Mismatch, omega: &[f64]) -> Vec<f64> {
 fn weighted_median_words(mismatch: &Mismatch, values: &[f64]) -> String {
     match mismatch.coherence_weights {
         None => median_words(values),
-        Some(_) => format!("the weighted median of {}", spread(values)),
+        Some(_) => format!("the weighted median of {}", range_words(values)),
     }
 }
 
@@ -96,8 +101,8 @@ pub(super) fn delay(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
     let value = s_to_ms(context.result.wanted_delay_s(pair)?);
     let mismatch = context.mismatch(pair)?;
     let mut rests_on = context.models_and_frequencies(mismatch);
-    let is_of_band = context.result.asks_band_delays();
-    let (equation, step, section) = if is_of_band {
+    let uses_band_delay = context.result.asks_band_delays();
+    let (equation, step, section) = if uses_band_delay {
         (
             "D = Σ W ω Δφ(H_sim, H_ref) / Σ W ω²",
             band_delay_words(context, mismatch),
@@ -110,7 +115,7 @@ pub(super) fn delay(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
             "M6, eq. (9)",
         )
     };
-    if !is_of_band && mismatch.leaves_half_a_turn() {
+    if !uses_band_delay && mismatch.leaves_half_a_turn() {
         rests_on.push(
             "at each frequency, the phase is taken on the turn nearest to the best-fitting pure \
             delay (M6b)"

@@ -2,6 +2,9 @@
 //! representative (M13). An error bar has two parts: *trim*, the spread over the other physics
 //! models, and *identification*, the spread over the other identified models or their standard
 //! errors.
+//!
+//! A *scalar* is a result with an error bar; for gains it is the logarithm. Each result is computed
+//! again with another model substituted for a representative ([`ModelSwap`], a model exchange).
 
 use gdcm_method::uncertainty::{Bar, Scalar, VarianceComponent};
 use gdcm_model::dataset::ConditionId;
@@ -29,14 +32,14 @@ pub(super) fn error_bar_lines(analysis: &Analysis, target: &ExplainTarget) -> Ve
 fn lines_of(analysis: &Analysis, target: &ExplainTarget) -> Option<Vec<String>> {
     let (condition, scalar) = scalar_of(analysis, target)?;
     let uncertainty = analysis.uncertainty.as_ref()?;
-    let found = uncertainty.conditions.get(&condition)?;
-    let bar = found.bars[scalar].as_ref()?;
+    let of_condition = uncertainty.conditions.get(&condition)?;
+    let bar = of_condition.bars[scalar].as_ref()?;
     let mut lines = bar_lines(bar, scalar, uncertainty.level);
     if let Some(result) = analysis.condition(condition) {
         if !takes_reported_error(result, scalar) && reports_error(analysis, result) {
             lines.push(SPREAD_ALONE.to_owned());
         }
-        for swap in &found.swaps.swaps {
+        for swap in &of_condition.swaps.swaps {
             lines.push(swap_words(result, swap, scalar));
         }
     }
@@ -94,7 +97,8 @@ fn part_words(name: &str, scalar: Scalar, part: Option<VarianceComponent>) -> St
     }
 }
 
-/// Formats a standard deviation: in ms for a delay, in percent for a gain.
+/// Formats a standard deviation: in ms for a delay; for a gain in percent, because that of a
+/// logarithm is relative.
 fn deviation_words(scalar: Scalar, deviation: f64) -> String {
     if scalar.is_delay() {
         format!("{:.2} ms", s_to_ms(deviation))
@@ -107,10 +111,10 @@ fn deviation_words(scalar: Scalar, deviation: f64) -> String {
 fn swap_words(result: &ConditionAnalysis, swap: &ModelSwap, scalar: Scalar) -> String {
     let kind = swap.bundle;
     let name = &result.condition.bundle(kind)[swap.model].name;
-    let figure = swap.figures.as_ref().and_then(|figures| figures[scalar]);
-    let words = match figure {
-        Some(figure) if scalar.is_delay() => format!("{:.2} ms", s_to_ms(figure)),
-        Some(figure) => format!("{:.4}", figure.exp()),
+    let value = swap.figures.as_ref().and_then(|figures| figures[scalar]);
+    let words = match value {
+        Some(delay_s) if scalar.is_delay() => format!("{:.2} ms", s_to_ms(delay_s)),
+        Some(ln_gain) => format!("{:.4}", ln_gain.exp()),
         None => "no value".to_owned(),
     };
     format!("with {kind} model {name} instead of the representative: {words}")

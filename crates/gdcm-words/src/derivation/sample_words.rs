@@ -2,8 +2,8 @@
 
 use gdcm_model::number_format::five_digits;
 
-/// Describes values by their number and range.
-pub(super) fn spread(values: &[f64]) -> String {
+/// Describes values by their number and range: "12 values from 0.8 to 1.3".
+pub(super) fn range_words(values: &[f64]) -> String {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
     match sorted.as_slice() {
@@ -27,7 +27,7 @@ pub(super) fn median_words(values: &[f64]) -> String {
         0 => "no values".to_owned(),
         count if count % 2 == 1 => format!(
             "the middle value of {}: {}",
-            spread(values),
+            range_words(values),
             five_digits(sorted[middle])
         ),
         _ => {
@@ -35,7 +35,7 @@ pub(super) fn median_words(values: &[f64]) -> String {
             let above = five_digits(sorted[middle]);
             format!(
                 "the mean of the two middle values of {}: ({below} + {above}) / 2",
-                spread(values)
+                range_words(values)
             )
         }
     }

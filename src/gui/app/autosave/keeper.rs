@@ -15,7 +15,7 @@ use gdcm_io::FileError;
 use gdcm_io::files::recovery_file::{LostStudy, RecoveryFile};
 
 use super::super::threads::ReplySender;
-use super::{Kept, NEVER, Remains, Task, Unsaved, locked};
+use super::{IDLE_WAIT, Kept, Remains, Task, Unsaved, locked};
 use crate::message::Message;
 
 /// Delay before a retry after a failure, such as a full disk.
@@ -92,21 +92,22 @@ impl Keeper {
         }
     }
 
-    /// Returns the time until the pending decisions are due; [`NEVER`] if there are none.
+    /// Returns the time until the pending decisions are due; [`IDLE_WAIT`] if there are none.
     fn wait(&self) -> Duration {
         match &self.pending {
             Some(pending) => pending.due.saturating_duration_since(Instant::now()),
-            None => NEVER,
+            None => IDLE_WAIT,
         }
     }
 
     /// Replaces the pending decisions by newer ones, due at the same time. If none are pending, the
-    /// new ones are due after `keep_after`, or, without a folder, after [`NEVER`].
+    /// new ones are due after `keep_after`; without a folder, where they cannot be written, after
+    /// [`IDLE_WAIT`].
     fn postpone(&mut self, unsaved: Box<Unsaved>, decided: SystemTime) {
         let due = match &self.pending {
             Some(pending) => pending.due,
             None if self.folder.is_some() => Instant::now() + self.keep_after,
-            None => Instant::now() + NEVER,
+            None => Instant::now() + IDLE_WAIT,
         };
         self.pending = Some(Pending {
             unsaved,

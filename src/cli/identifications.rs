@@ -257,7 +257,7 @@ impl DescribedIdentification {
     /// Returns the models with their description, as written to a file.
     pub(super) fn models<'d>(&'d self, found: &'d Identification) -> IdentifiedModels<'d> {
         IdentifiedModels {
-            found,
+            identification: found,
             channels: &self.channels,
             records: &self.records,
             cautions: &self.cautions,

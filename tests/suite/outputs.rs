@@ -394,7 +394,7 @@ fn an_export_keeps_existing_files_unless_they_may_be_overwritten() {
         &["json", "csv", "assessment"],
     );
     let plan = state(&window).current_export_plan().unwrap();
-    assert_eq!((plan.existing.len(), plan.number.as_str()), (3, "_2"));
+    assert_eq!((plan.existing_files.len(), plan.suffix.as_str()), (3, "_2"));
     press_export(&mut window);
     assert_eq!(fs::read_to_string(&csv).unwrap(), "mine");
     let numbered = fs::read_to_string(folder.path().join("corrections_2.csv")).unwrap();

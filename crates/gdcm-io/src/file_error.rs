@@ -121,13 +121,13 @@ pub enum FileError {
         sanitized_path(path)
     )]
     FolderTooDeep { path: PathBuf },
-    #[error("{}: {}", sanitized_path(path), no_record_words(record.as_deref(), *held))]
+    #[error("{}: {}", sanitized_path(path), no_record_words(record.as_deref(), *record_count))]
     NoRecord {
         path: PathBuf,
         /// Name of the requested record; `None` if the file should contain a single record.
         record: Option<String>,
         /// Number of records in the file.
-        held: usize,
+        record_count: usize,
     },
     #[error(
         "{}: contains more than {most} files; give a folder with fewer files",
@@ -328,7 +328,7 @@ impl FileError {
 
     /// Creates the same error as [`FileError::content`], and adds the line at which the condition
     /// or the model begins in the JSON text.
-    pub(super) fn content_of(path: &Path, error: ContentError, text: &[u8]) -> Self {
+    pub(super) fn content_with_line(path: &Path, error: ContentError, text: &[u8]) -> Self {
         FileError::Content {
             path: path.to_owned(),
             line: line_of(text, &error.place),
@@ -366,20 +366,20 @@ fn line_words(line: Option<usize>) -> String {
 }
 
 fn no_record_words(record: Option<&str>, count: usize) -> String {
-    let held = match count {
+    let contents = match count {
         0 => "contains no records".to_owned(),
         1 => "contains only another record".to_owned(),
         _ => format!("contains {count} records"),
     };
     match record {
         Some(record) => format!(
-            "the record {} is not in this file, which {held}; correct \"variable\" of the record in the \
+            "the record {} is not in this file, which {contents}; correct \"variable\" of the record in the \
             dataset",
             quoted(record)
         ),
         None if count < 2 => "the file contains no records".to_owned(),
         None => format!(
-            "a single record is required, but the file {held}; name one as \"variable\" of the record \
+            "a single record is required, but the file {contents}; name one as \"variable\" of the record \
             in the dataset"
         ),
     }

@@ -20,7 +20,7 @@ use crate::reading_budget::ReadingBudget;
 /// UTF-8 byte order mark, which some editors put before a text.
 const BYTE_ORDER_MARK: [u8; 3] = [0xef, 0xbb, 0xbf];
 
-/// Number of bytes read or hashed between two budget queries.
+/// Number of bytes read or hashed between two checks for cancellation.
 const CHUNK: usize = 1 << 16;
 
 /// A file's text and the hash of its bytes.
@@ -84,7 +84,7 @@ fn open_file(path: &Path) -> Result<(File, u64), FileError> {
             path: path.to_owned(),
         });
     }
-    if let Some(kind) = kind_of(metadata.file_type()) {
+    if let Some(kind) = special_file_kind(metadata.file_type()) {
         return Err(FileError::NotAFile {
             path: path.to_owned(),
             kind,
@@ -117,6 +117,7 @@ pub(super) fn read_bytes(
 ) -> Result<Vec<u8>, FileError> {
     let failed = |error: std::io::Error| FileError::reading(path, &error);
     let (file, length) = open_file(path)?;
+    // A byte more than permitted shows that the file is too long.
     let mut file = file.take(most + 1);
     let mut bytes = Vec::with_capacity(usize::try_from(length.min(most)).unwrap_or(0));
     loop {
@@ -124,6 +125,7 @@ pub(super) fn read_bytes(
         if chunk.read_to_end(&mut bytes).map_err(failed)? == 0 {
             break;
         }
+        // A work step per byte.
         budget
             .work(CHUNK as u64, "")
             .map_err(|fault| FileError::variables(path, fault))?;
@@ -132,21 +134,22 @@ pub(super) fn read_bytes(
     Ok(bytes)
 }
 
-/// Describes a path that is neither a file nor a directory; `None` for files and directories.
-pub(super) fn kind_of(kind: FileType) -> Option<&'static str> {
-    if kind.is_file() || kind.is_dir() || kind.is_symlink() {
+/// Describes a path that is neither a file nor a directory; `None` for files, directories and
+/// links.
+pub(super) fn special_file_kind(file_type: FileType) -> Option<&'static str> {
+    if file_type.is_file() || file_type.is_dir() || file_type.is_symlink() {
         return None;
     }
     #[cfg(unix)]
     {
         use std::os::unix::fs::FileTypeExt;
-        if kind.is_fifo() {
+        if file_type.is_fifo() {
             return Some("a named pipe");
         }
-        if kind.is_socket() {
+        if file_type.is_socket() {
             return Some("a socket");
         }
-        if kind.is_char_device() || kind.is_block_device() {
+        if file_type.is_char_device() || file_type.is_block_device() {
             return Some("a device");
         }
     }
@@ -175,6 +178,7 @@ pub(super) fn sha256(
 ) -> Result<String, FileError> {
     let mut hash = Sha256::new();
     for chunk in bytes.chunks(CHUNK) {
+        // Only check for cancellation: the bytes were counted when they were read.
         budget
             .work(0, "")
             .map_err(|fault| FileError::variables(path, fault))?;

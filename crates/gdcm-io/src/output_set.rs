@@ -18,7 +18,7 @@ use self::temporary_files::{
     KeptAs, directory_of, kept_aside, read_temporary_file, remove_leftovers, write_temporary_file,
 };
 use super::file_error::FileError;
-use super::file_reading::kind_of;
+use super::file_reading::special_file_kind;
 
 /// How files that exist at the output paths are treated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -89,7 +89,7 @@ impl OutputSet {
             };
             // The path is not opened: opening a pipe waits for its other end. Replacing a pipe or a
             // device by a file would break its other users.
-            if let Some(kind) = kind_of(found.file_type()) {
+            if let Some(kind) = special_file_kind(found.file_type()) {
                 return Err(FileError::OutputNotAFile {
                     path: path.to_owned(),
                     kind,
@@ -207,7 +207,8 @@ fn is_same_file(path: &Path, input: &Path) -> bool {
     let Ok(found) = fs::metadata(input) else {
         return false;
     };
-    kind_of(found.file_type()).is_none() && same_file::is_same_file(path, input).unwrap_or(false)
+    special_file_kind(found.file_type()).is_none()
+        && same_file::is_same_file(path, input).unwrap_or(false)
 }
 
 /// Returns a file's line in `sha256sum` format.

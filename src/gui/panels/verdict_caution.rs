@@ -38,7 +38,7 @@ pub(super) fn caution(state: &State, shown: &ConditionAnalysis) -> Option<Messag
     // Rule 2.
     if state
         .analysis()
-        .is_some_and(|analysis| analysis.asked_physics().is_err())
+        .is_some_and(|analysis| analysis.requested_physics().is_err())
     {
         let text = "Physics parameters not applied";
         return Some(Message::new("no-physics", text));
@@ -59,7 +59,7 @@ struct CouplingCaution {
 /// poles unstable in the band; otherwise the number of cautions, which the reasons sheet lists.
 /// `None` without any.
 fn coupling_caution(state: &State) -> Option<CouplingCaution> {
-    if state.analysis()?.asked_couplings().is_err() {
+    if state.analysis()?.requested_couplings().is_err() {
         return Some(CouplingCaution {
             kind: RemarkKind::Trouble,
             message: Message::new("no-couplings", "No couplings"),

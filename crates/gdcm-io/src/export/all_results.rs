@@ -33,17 +33,17 @@ pub(super) const JSON: ExportFormat = ExportFormat {
     words: "All values of each condition, and the schedule (JSON, the format of corrections.json)",
     options: OPTIONS,
     check_path: |_| Ok(()),
-    contents: |analysis, _| ExportContents::of_results(analysis),
+    correction_parts: |analysis, _| ExportContents::of_results(analysis),
     export: |export| {
         let Export {
             analysis, source, ..
         } = *export;
-        let chosen = export.request.chosen(analysis);
+        let chosen = export.request.chosen_conditions(analysis);
         let exported = Exported::new(export.results_summary(), move |file| {
             write_corrections(analysis, &source.sha256, &chosen, file)
         });
         Ok(exported
-            .with(export.price_remarks())
+            .with_remarks(export.price_remarks())
             .with_notes(export.result_notes()))
     },
 };
@@ -55,11 +55,11 @@ pub(super) const CSV: ExportFormat = ExportFormat {
     words: "Gains and delays, one row per condition and channel (CSV, the format of corrections.csv)",
     export: |export| {
         let mut text = Vec::new();
-        let chosen = export.request.chosen(export.analysis);
+        let chosen = export.request.chosen_conditions(export.analysis);
         write_corrections_csv(export.analysis, &chosen, &mut text)
             .map_err(|error| ExportFault::contents(&error))?;
         Ok(Exported::bytes(rows_summary(&text), text)
-            .with(export.price_remarks())
+            .with_remarks(export.price_remarks())
             .with_notes(export.result_notes()))
     },
     ..JSON
@@ -73,11 +73,11 @@ pub(super) const ASSESSMENT: ExportFormat = ExportFormat {
     words: "J without and with correction, one row per condition and response (CSV, the format of assessment.csv)",
     export: |export| {
         let mut text = Vec::new();
-        let chosen = export.request.chosen(export.analysis);
+        let chosen = export.request.chosen_conditions(export.analysis);
         write_assessment_csv(export.analysis, &chosen, &mut text)
             .map_err(|error| ExportFault::contents(&error))?;
         Ok(Exported::bytes(rows_summary(&text), text)
-            .with(export.price_remarks())
+            .with_remarks(export.price_remarks())
             .with_notes(export.result_notes()))
     },
     ..JSON
@@ -91,12 +91,12 @@ pub(super) const PHYSICS: ExportFormat = ExportFormat {
     title: "One row per physics parameter",
     words: "Physics parameters, one row each (CSV, the format of physics.csv)",
     options: &[],
-    contents: |analysis, _| ExportContents::of_physics(analysis),
+    correction_parts: |analysis, _| ExportContents::of_physics(analysis),
     export: |export| {
         let requested =
             export
                 .analysis
-                .asked_physics()
+                .requested_physics()
                 .map_err(|failure| ExportFault::NoPhysics {
                     why: failure.to_string(),
                 })?;
@@ -119,7 +119,7 @@ pub(super) const MAT: ExportFormat = ExportFormat {
     words: "MATLAB data: all corrections as one struct",
     export: |export| {
         let analysis = export.analysis;
-        let chosen = export.request.chosen(analysis);
+        let chosen = export.request.chosen_conditions(analysis);
         let corrections = corrections(analysis, &export.source.sha256, &chosen);
         let variables = [Variable {
             name: "corrections".to_owned(),
@@ -127,7 +127,7 @@ pub(super) const MAT: ExportFormat = ExportFormat {
         }];
         let bytes = mat::write(&variables)?;
         Ok(Exported::bytes(export.results_summary(), bytes)
-            .with(export.price_remarks())
+            .with_remarks(export.price_remarks())
             .with_notes(export.result_notes())
             .with_head(variables_head(&variables)))
     },
@@ -142,7 +142,7 @@ impl Export<'_> {
     }
 }
 
-/// Counts the lines after the heading of a table.
+/// Counts the lines after the heading of a table; no cell contains a line break.
 fn rows_summary(text: &[u8]) -> FileSummary {
     let lines = text.iter().filter(|byte| **byte == b'\n').count();
     FileSummary::Rows {

@@ -3,7 +3,7 @@
 //! A corrected model has the matrices of `M_O H~ M_I` (M10, M16): a physics model with its
 //! couplings, and the gains, delays and leads of its channels. `requested_models` computes the
 //! models, `metrics` the values beside the matrices, and `export_notes` the notes on their
-//! accuracy.
+//! accuracy. *Remarks* are lines of text for the command line, *notes* facts for the list of files.
 
 mod matlab;
 mod metrics;
@@ -46,7 +46,7 @@ pub(super) const STATE_SPACE: ExportFormat = ExportFormat {
     words: "Corrected models in state-space form, MATLAB data",
     options: OPTIONS,
     check_path: |path| ModelsFormat::from_path(path).map(drop),
-    contents: |analysis, request| contents_of_models(analysis, request),
+    correction_parts: |analysis, request| contents_of_models(analysis, request),
     export: export_models,
 };
 
@@ -123,7 +123,7 @@ fn export_models<'e>(export: &Export<'e>) -> Result<Exported<'e>, ExportFault> {
             })
         }
     };
-    Ok(exported.with(remarks).with_notes(notes))
+    Ok(exported.with_remarks(remarks).with_notes(notes))
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -163,14 +163,14 @@ impl ModelsFormat {
 /// correction parts. Names have the form "condition 10, nominal"; the notes describe the correction
 /// and its accuracy.
 fn models_with_contents(models: &[ExportedModel], dataset: &Dataset) -> Vec<ModelWithContents> {
-    let mut containing = Vec::with_capacity(models.len());
+    let mut with_contents = Vec::with_capacity(models.len());
     for model in models {
-        containing.push(ModelWithContents {
+        with_contents.push(ModelWithContents {
             model: found_model(model, dataset),
             contains: model.contents.json(dataset),
         });
     }
-    containing
+    with_contents
 }
 
 /// Returns a corrected model in the form used for models found in files.
@@ -178,6 +178,7 @@ fn found_model(model: &ExportedModel, dataset: &Dataset) -> FoundModel {
     let name = format!("condition {}, {}", model.condition, model.name);
     FoundModel {
         draft: ModelDraft {
+            // A, B, C and D.
             matrices: matrices(model).map(|(_, matrix)| Some(matrix.clone())),
             timing: model.model.timing().clone(),
             states: model.states.clone(),
@@ -244,7 +245,7 @@ mod tests {
                 (model.phase_error_deg() - phase_deg).abs() < 1e-9 && phase_deg > 0.1,
                 "{phase_deg}"
             );
-            let error_deg = format!(" {} deg", telling(model.left_out_deg, 3));
+            let error_deg = format!(" {} deg", telling(model.omitted_delay_deg, 3));
             assert!(model.words().contains(&error_deg), "{}", model.words());
         }
         let own = ExportRequest {
@@ -254,7 +255,7 @@ mod tests {
         let own = exported_models(&analysis, &own).unwrap();
         assert!(
             own.iter()
-                .all(|model| model.contents.left_out.is_empty() && model.left_out_deg == 0.0)
+                .all(|model| model.contents.left_out.is_empty() && model.omitted_delay_deg == 0.0)
         );
         assert!(
             own.iter()

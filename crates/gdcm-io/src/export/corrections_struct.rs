@@ -2,12 +2,15 @@
 //!
 //! ```text
 //! 1  lists of responses -> logical matrices; net gains -> matrices; scheduled delays -> lists
-//! 2  names of members in earlier versions -> added beside the present names
-//! 3  the changed JSON -> MATLAB, with the layout in `LAYOUT`
-//! 4  names and units of the channels -> added to the struct
+//! 2  names of solution members in earlier versions -> added beside the present names
+//! 3  the changed JSON, without the channels -> MATLAB, with the layout in `LAYOUT`
+//! 4  names and units of the channels -> added to the struct, each as a separate column
 //! ```
 //!
-//! A response's net gain is the product of its output's and its input's gain.
+//! A response's net gain is the product of its output's and its input's gain; `u_physics` and
+//! `u_identification` are its standard deviations due to the choice of the physics model and to
+//! the identification (M13). A *held* response is constrained; a *held-out* condition is not used
+//! to fit the schedule.
 
 use serde_json::{Value as Json, json};
 
@@ -21,11 +24,12 @@ use crate::formats::variables::Value;
 /// ordered as in the dataset's `inputs` and `outputs`.
 const LAYOUT: Layout = Layout {
     by_channel: &["inputs", "outputs"],
-    by_name: &["discontinuity"],
-    columns: &["table"],
+    by_model_name: &["discontinuity"],
+    gathered_lists: &["table"],
 };
 
-/// Members of `corrections.json` that the MATLAB struct repeats under names from earlier versions.
+/// Members of the solutions in `corrections.json` that the MATLAB struct repeats under names from
+/// earlier versions.
 const EARLIER_NAMES: [EarlierName; 6] = [
     EarlierName::new("gain_objective", "gain_solution", "objective"),
     EarlierName::new("gain_lower_bound", "gain_solution", "lower_bound"),
@@ -35,10 +39,12 @@ const EARLIER_NAMES: [EarlierName; 6] = [
     EarlierName::new("delay_matched", "delay_solution", "matched"),
 ];
 
-/// Name of a solution member in earlier versions.
+/// Name of a solution member in earlier versions, when it was a member of the condition.
 struct EarlierName {
     name: &'static str,
+    /// Member of the condition: "gain_solution" or "delay_solution".
     solution: &'static str,
+    /// Present name, within the solution.
     member: &'static str,
 }
 
@@ -52,44 +58,64 @@ impl EarlierName {
     }
 }
 
-/// Returns the members of `corrections.json` as a struct. Response lists become logical matrices
-/// with a row per output and a column per input. `net_gains` becomes several matrices;
-/// `net_gain_table` holds all its members. Channel names and units are added, and solution members
-/// are repeated under their names from earlier versions.
+/// Matrix (outputs x inputs) in the struct with one member of each response's net gain.
+struct NetGainMatrix {
+    /// Field in the struct.
+    name: &'static str,
+    /// Member of the net gain in `corrections.json`.
+    member: &'static str,
+    /// Index in this member if it is a list, such as an interval's end.
+    index: Option<usize>,
+}
+
+impl NetGainMatrix {
+    const fn new(name: &'static str, member: &'static str, index: Option<usize>) -> Self {
+        Self {
+            name,
+            member,
+            index,
+        }
+    }
+
+    /// Returns a response's value from the list of net gains; null if missing.
+    fn value_at(&self, net_gains: &[Json], output: &str, input: &str) -> Json {
+        let net_gain = net_gains
+            .iter()
+            .find(|net_gain| net_gain["output"] == output && net_gain["input"] == input);
+        let Some(value) = net_gain.and_then(|net_gain| net_gain.get(self.member)) else {
+            return Json::Null;
+        };
+        match self.index {
+            Some(index) => value.get(index).cloned().unwrap_or(Json::Null),
+            None => value.clone(),
+        }
+    }
+}
+
+const NET_GAIN_MATRICES: [NetGainMatrix; 5] = [
+    NetGainMatrix::new("net_gains", "gain", None),
+    NetGainMatrix::new("net_gains_low", "interval", Some(0)),
+    NetGainMatrix::new("net_gains_high", "interval", Some(1)),
+    NetGainMatrix::new("u_physics", "u_physics", None),
+    NetGainMatrix::new("u_identification", "u_identification", None),
+];
+
+/// Returns the members of `corrections.json` as a struct.
 pub(super) fn corrections_struct(mut corrections: Json, dataset: &Dataset) -> Value {
-    // Step 1, for the settings.
-    let settings = &mut corrections["settings"];
-    for name in ["constrained", "ignored"] {
-        settings[name] = marked_responses(&settings[name], dataset);
-    }
-    // This setting is absent if coherence is not used.
-    if settings.get("coherence_threshold").is_none() {
-        settings["coherence_threshold"] = Json::Null;
-    }
-    // Steps 1 and 2, for each condition.
+    // Steps 1 and 2.
+    restructure_settings(&mut corrections["settings"], dataset);
     if let Some(conditions) = corrections["conditions"].as_array_mut() {
         for condition in conditions {
             restructure_condition(condition, dataset);
+            repeat_under_earlier_names(condition);
         }
     }
-    // Step 4 adds channel names and units as separate columns.
+    restructure_schedule(&mut corrections["schedule"]);
+    // Step 3.
     if let Some(members) = corrections.as_object_mut() {
         members.shift_remove("inputs");
         members.shift_remove("outputs");
     }
-    // Step 1, for the schedule; without one, the struct has an empty list.
-    if corrections["schedule"].is_null() {
-        corrections["schedule"] = json!([]);
-    }
-    if let Some(rows) = corrections["schedule"]
-        .get_mut("table")
-        .and_then(Json::as_array_mut)
-    {
-        for row in rows {
-            add_delay_lists(row);
-        }
-    }
-    // Step 3.
     let mut value = LAYOUT.value("", &corrections);
     // Step 4.
     if let Value::Struct(records) = &mut value {
@@ -103,30 +129,52 @@ pub(super) fn corrections_struct(mut corrections: Json, dataset: &Dataset) -> Va
     value
 }
 
-/// Changes a condition's members as described at [`corrections_struct`].
+/// Step 1 for the settings. Adds the coherence threshold as null if it is absent because coherence
+/// is not used.
+fn restructure_settings(settings: &mut Json, dataset: &Dataset) {
+    for name in ["constrained", "ignored"] {
+        settings[name] = marked_responses(&settings[name], dataset);
+    }
+    if settings.get("coherence_threshold").is_none() {
+        settings["coherence_threshold"] = Json::Null;
+    }
+}
+
+/// Step 1 for a condition: `net_gains` becomes several matrices, and `net_gain_table` keeps all its
+/// members. Adds `held_out`, which is absent if it is false.
 fn restructure_condition(condition: &mut Json, dataset: &Dataset) {
     condition["held"] = marked_responses(&condition["held"], dataset);
     condition["held_out"] = condition.get("held_out").cloned().unwrap_or(false.into());
     let net_gains = condition["net_gains"].take();
     let net_gains = net_gains.as_array().map(Vec::as_slice).unwrap_or_default();
+    // The list has all inputs for the first output, then for the second, and so on.
     condition["net_gain_table"] = net_gains
         .chunks(dataset.inputs().len())
         .map(|row| json!(row))
         .collect();
-    for (name, key, place) in [
-        ("net_gains", "gain", None),
-        ("net_gains_low", "interval", Some(0)),
-        ("net_gains_high", "interval", Some(1)),
-        ("u_physics", "u_physics", None),
-        ("u_identification", "u_identification", None),
-    ] {
-        condition[name] = response_table(dataset, |output, input| {
-            net_gain_value(net_gains, output, input, key, place)
+    for matrix in NET_GAIN_MATRICES {
+        condition[matrix.name] = response_table(dataset, |output, input| {
+            matrix.value_at(net_gains, output, input)
         });
     }
-    // Step 2.
+}
+
+/// Step 2.
+fn repeat_under_earlier_names(condition: &mut Json) {
     for earlier in EARLIER_NAMES {
         condition[earlier.name] = condition[earlier.solution][earlier.member].clone();
+    }
+}
+
+/// Step 1 for the schedule; a missing schedule becomes an empty list.
+fn restructure_schedule(schedule: &mut Json) {
+    if schedule.is_null() {
+        *schedule = json!([]);
+    }
+    if let Some(rows) = schedule.get_mut("table").and_then(Json::as_array_mut) {
+        for row in rows {
+            add_delay_lists(row);
+        }
     }
 }
 
@@ -153,27 +201,6 @@ fn marked_responses(pairs: &Json, dataset: &Dataset) -> Json {
             .any(|pair| pair[0] == output && pair[1] == input)
             .into()
     })
-}
-
-/// Returns the member `key` of a response's net gain or, if `place` is given, that member's entry
-/// at this index, such as an end of the interval; null if missing.
-fn net_gain_value(
-    net_gains: &[Json],
-    output: &str,
-    input: &str,
-    key: &str,
-    place: Option<usize>,
-) -> Json {
-    let net_gain = net_gains
-        .iter()
-        .find(|net_gain| net_gain["output"] == output && net_gain["input"] == input);
-    let Some(value) = net_gain.and_then(|net_gain| net_gain.get(key)) else {
-        return Json::Null;
-    };
-    match place {
-        Some(place) => value.get(place).cloned().unwrap_or(Json::Null),
-        None => value.clone(),
-    }
 }
 
 /// Adds a schedule row's delays as lists in channel order; nothing if it has no delays.

@@ -1,9 +1,11 @@
 //! Notes on omissions and approximations in exported files, shared by several formats.
 //!
-//! A condition's *own* correction is its own optimum; the schedule is a regression of the
-//! optima over airspeed. A *signed delay* is a channel's delay or, if negative, its lead (M15).
-//! The *price* of leads is the gain that they add above the band, and the frequency above which
-//! the model is not valid (M15.6).
+//! The *chosen* conditions are those in the request, by default all. A condition's *own*
+//! correction is its own optimum; the schedule is a regression of the optima over airspeed. A
+//! *signed delay* is a channel's delay or, if negative, its lead (M15); it is *apart* if it differs
+//! so much from those in the other conditions that no schedule can reproduce it. The *price* of
+//! leads is the gain that they add above the band, and the frequency above which the model is not
+//! valid (M15.6).
 
 use std::collections::BTreeMap;
 
@@ -17,7 +19,8 @@ use gdcm_study::{AssessedCorrection, PhaseCorrection};
 use super::Export;
 use super::exported_model::ExportedModel;
 
-/// Phase error \[deg\] due to approximations, below which a corrected model needs no note.
+/// Phase error \[deg\] due to approximations, below which a corrected model needs no note: with two
+/// decimals it would be 0.00.
 const NOTABLE_ERROR_DEG: f64 = 0.005;
 
 impl Export<'_> {
@@ -27,18 +30,20 @@ impl Export<'_> {
     pub(super) fn result_notes(&self) -> Vec<ExportNote> {
         let analysis = self.analysis;
         let mut notes = self.choice_notes();
-        let chosen = self.request.chosen(analysis);
-        let failed: Vec<ConditionId> = chosen
+        let chosen = self.request.chosen_conditions(analysis);
+        let without_result: Vec<ConditionId> = chosen
             .into_iter()
             .filter(|condition| analysis.condition(*condition).is_none())
             .collect();
-        if !failed.is_empty() {
-            notes.push(ExportNote::ConditionsWithoutResult { conditions: failed });
+        if !without_result.is_empty() {
+            notes.push(ExportNote::ConditionsWithoutResult {
+                conditions: without_result,
+            });
         }
         if analysis.uncertainty.is_none() {
             notes.push(ExportNote::NoErrorBars);
         }
-        if let Err(why) = analysis.asked_couplings() {
+        if let Err(why) = analysis.requested_couplings() {
             notes.push(ExportNote::CouplingsLeftOut { why: why.clone() });
         }
         match &analysis.schedule {
@@ -54,44 +59,48 @@ impl Export<'_> {
         let Ok(schedule) = &self.analysis.schedule else {
             return Vec::new();
         };
-        let mut notes = self.delay_notes(schedule, &self.analysis.scheduled());
         let scheduled = self.analysis.scheduled();
-        let others: Vec<ConditionId> = self
+        let mut notes = self.delay_notes(schedule, &scheduled);
+        let not_scheduled: Vec<ConditionId> = self
             .analysis
             .study
             .dataset
             .ids()
             .filter(|condition| !scheduled.contains(condition))
             .collect();
-        if !others.is_empty() {
-            notes.push(ExportNote::ConditionsNotScheduled { conditions: others });
+        if !not_scheduled.is_empty() {
+            notes.push(ExportNote::ConditionsNotScheduled {
+                conditions: not_scheduled,
+            });
         }
         notes.extend(price_note(schedule.lead_price()));
         notes
     }
 
-    /// Returns a note if the engineer has left out conditions.
+    /// Returns a note if conditions are not chosen.
     fn choice_notes(&self) -> Vec<ExportNote> {
-        let chosen = self.request.chosen(self.analysis);
-        let left_out: Vec<ConditionId> = self
+        let chosen = self.request.chosen_conditions(self.analysis);
+        let not_chosen: Vec<ConditionId> = self
             .analysis
             .study
             .dataset
             .ids()
             .filter(|condition| !chosen.contains(condition))
             .collect();
-        if left_out.is_empty() {
+        if not_chosen.is_empty() {
             return Vec::new();
         }
         vec![ExportNote::ConditionsNotChosen {
-            conditions: left_out,
+            conditions: not_chosen,
         }]
     }
 
-    /// Returns the notes on the scheduled delays and leads: if the schedule has none although the
-    /// study corrects the phase, the channels that the own corrections of `conditions` delay; if
-    /// the schedule has some, whether all are constant; then the signed delays that cannot be
-    /// scheduled.
+    /// Returns the notes on the scheduled delays and leads:
+    ///
+    /// - the schedule has none, although the study corrects the phase: the channels that the own
+    ///   corrections of `conditions` delay;
+    /// - the schedule has some: a note if all are constant;
+    /// - in any case, the signed delays that are apart.
     fn delay_notes(&self, schedule: &Schedule, conditions: &[ConditionId]) -> Vec<ExportNote> {
         let analysis = self.analysis;
         let mut notes = Vec::new();
@@ -110,7 +119,8 @@ impl Export<'_> {
     }
 
     /// Returns whether no channel's scheduled delay (with leads: signed delay) depends on airspeed.
-    /// False without scheduled delays, and if the schedule has a single airspeed.
+    /// False without scheduled delays, and if the schedule has a single airspeed, over which
+    /// nothing could vary.
     fn has_constant_delays(&self, schedule: &Schedule) -> bool {
         let airspeeds = &schedule.airspeeds;
         if airspeeds.min_kt == airspeeds.max_kt {
@@ -127,10 +137,10 @@ impl Export<'_> {
     }
 }
 
-/// Returns a note on each condition with signed delays that cannot be scheduled; its channels are
-/// sorted by their difference from the other conditions, largest first.
+/// Returns a note on each condition with signed delays apart from those in the other conditions;
+/// its channels are sorted by this difference, largest first.
 fn signed_delay_notes(schedule: &Schedule) -> Vec<ExportNote> {
-    let mut by_condition: BTreeMap<ConditionId, Vec<SignedDelayApart>> = BTreeMap::new();
+    let mut apart_by_condition: BTreeMap<ConditionId, Vec<SignedDelayApart>> = BTreeMap::new();
     for caution in &schedule.cautions {
         if let ScheduleCaution::SignedDelayApart {
             channel,
@@ -144,11 +154,14 @@ fn signed_delay_notes(schedule: &Schedule) -> Vec<ExportNote> {
                 tau_s: *tau_s,
                 elsewhere_s: *elsewhere_s,
             };
-            by_condition.entry(*condition).or_default().push(apart);
+            apart_by_condition
+                .entry(*condition)
+                .or_default()
+                .push(apart);
         }
     }
     let mut notes = Vec::new();
-    for (condition, mut channels) in by_condition {
+    for (condition, mut channels) in apart_by_condition {
         channels.sort_by(|a, b| {
             let difference_a = (a.tau_s - a.elsewhere_s).abs();
             let difference_b = (b.tau_s - b.elsewhere_s).abs();
@@ -162,7 +175,7 @@ fn signed_delay_notes(schedule: &Schedule) -> Vec<ExportNote> {
     notes
 }
 
-/// Returns the notes on a file with corrected models: left-out conditions; delays and lead price,
+/// Returns the notes on a file with corrected models: conditions not chosen; delays and lead price,
 /// from the schedule if it corrects the models, else only the price, from the models; and the
 /// accuracy of the worst model if its error is notable.
 pub(super) fn model_notes(export: &Export<'_>, models: &[ExportedModel]) -> Vec<ExportNote> {

@@ -2,7 +2,7 @@
 //! and the same bytes are then written together, or not at all.
 //!
 //! ```text
-//! names   prefix + stem + number + extension; a number prevents replacing files
+//! names   prefix + stem + suffix + extension; a suffix ("_2") prevents replacing files
 //! dry run each format computes its bytes, its summary and its notes; notes on the same subject are
 //!         merged; then the checksums of these files, if requested
 //! write   all files; the caller writes the report
@@ -35,11 +35,11 @@ const CHECKSUM_STEM: &str = "checksums";
 /// How existing files with the set's names are treated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ExistingNames {
-    /// The set gets names as if no file existed.
+    /// The set gets names as if no file existed; writing then replaces or refuses existing files.
     #[default]
     Ignore,
-    /// If a file with one of the names exists, all names in the set get the same number: "_2",
-    /// "_3".
+    /// If a file with one of the names exists, all names in the set get the same number as suffix:
+    /// "_2", "_3".
     Number,
 }
 
@@ -90,11 +90,10 @@ pub struct PlannedNote {
 pub struct ExportPlan {
     pub files: Vec<PlannedFile>,
     pub notes: Vec<PlannedNote>,
-    /// Names that the set would have without a number, and that exist in the folder.
-    pub existing: Vec<String>,
-    /// Number in the names, by which existing files are kept, with its underscore: "_2"; empty
-    /// without a number.
-    pub number: String,
+    /// Names that the set would have without a suffix, and that exist in the folder.
+    pub existing_files: Vec<String>,
+    /// Suffix of the names, by which existing files are kept: "_2"; may be empty.
+    pub suffix: String,
     /// Report file name; the dry run does not compute the report.
     pub report: Option<String>,
 }
@@ -113,47 +112,47 @@ impl ExportSet {
         (formats, names.contains(&CHECKSUMS))
     }
 
-    /// Returns the set's file names with this number in each: one per format in their order, then
-    /// checksums and report if the set has them.
-    fn names(&self, number: &str) -> Vec<String> {
+    /// Returns the set's file names with this suffix: one per format in their order, then checksums
+    /// and report if the set has them.
+    fn names(&self, suffix: &str) -> Vec<String> {
         let mut names = Vec::new();
         for format in &self.formats {
             names.push(file_name(
                 &self.prefix,
                 format.stem,
-                number,
+                suffix,
                 format.extension,
             ));
         }
         if self.has_checksums {
-            names.push(file_name(&self.prefix, CHECKSUM_STEM, number, CHECKSUMS));
+            names.push(file_name(&self.prefix, CHECKSUM_STEM, suffix, CHECKSUMS));
         }
         if self.has_report {
-            names.push(self.report_name(number));
+            names.push(self.report_name(suffix));
         }
         names
     }
 
-    fn report_name(&self, number: &str) -> String {
-        file_name(&self.prefix, REPORT_STEM, number, "html")
+    fn report_name(&self, suffix: &str) -> String {
+        file_name(&self.prefix, REPORT_STEM, suffix, "html")
     }
 
-    /// Returns the names in the folder that a set with this number would replace.
-    fn existing_names(&self, number: &str) -> Vec<String> {
-        let mut names = self.names(number);
+    /// Returns the names in the folder that a set with this suffix would replace.
+    fn existing_files(&self, suffix: &str) -> Vec<String> {
+        let mut names = self.names(suffix);
         names.retain(|name| self.folder.join(name).exists());
         names
     }
 
-    /// Returns the first number, from "_2", with which no file exists.
-    fn free_number(&self) -> String {
-        let mut count = 2;
+    /// Returns the first suffix, from "_2", with which no file exists.
+    fn free_suffix(&self) -> String {
+        let mut number = 2;
         loop {
-            let number = format!("_{count}");
-            if self.existing_names(&number).is_empty() {
-                return number;
+            let suffix = format!("_{number}");
+            if self.existing_files(&suffix).is_empty() {
+                return suffix;
             }
-            count += 1;
+            number += 1;
         }
     }
 
@@ -185,25 +184,25 @@ impl ExportSet {
         source: &ExportSource,
         progress: &dyn Progress,
     ) -> Result<ExportPlan, Cancelled> {
-        let existing = self.existing_names("");
-        let number = if existing.is_empty() || self.existing == ExistingNames::Ignore {
+        let existing_files = self.existing_files("");
+        let suffix = if existing_files.is_empty() || self.existing == ExistingNames::Ignore {
             String::new()
         } else {
-            self.free_number()
+            self.free_suffix()
         };
         let mut plan = ExportPlan {
             files: Vec::new(),
             notes: Vec::new(),
-            existing,
+            existing_files,
             report: if self.has_report {
-                Some(self.report_name(&number))
+                Some(self.report_name(&suffix))
             } else {
                 None
             },
-            number,
+            suffix,
         };
         // After the formats, the next name is that of the checksums.
-        let mut names = self.names(&plan.number).into_iter();
+        let mut names = self.names(&plan.suffix).into_iter();
         for (index, (format, name)) in self.formats.iter().zip(&mut names).enumerate() {
             progress.advanced(index, self.formats.len());
             if progress.cancelled() {
@@ -243,7 +242,7 @@ impl ExportSet {
             request: &request,
             path: &path,
         };
-        let (contents, notes) = match computed(&export) {
+        let (contents, notes) = match compute_file(&export) {
             Ok((contents, notes)) => (Ok(contents), notes),
             Err(fault) => (Err(fault), Vec::new()),
         };
@@ -259,7 +258,7 @@ impl ExportSet {
 }
 
 /// Computes the contents of a file, with its notes.
-fn computed(export: &Export<'_>) -> Result<(PlannedContents, Vec<ExportNote>), ExportFault> {
+fn compute_file(export: &Export<'_>) -> Result<(PlannedContents, Vec<ExportNote>), ExportFault> {
     let format = &export.request.format;
     (format.check_path)(export.path)?;
     let exported = (format.export)(export)?;
@@ -281,6 +280,7 @@ impl ExportPlan {
     /// Adds a note on the file that is added next, or on the report after all files. If the plan
     /// already has a note on the same subject, the file is added to that note.
     fn add_note(&mut self, note: ExportNote) {
+        // The next file's index; after all files, the report's.
         let file = self.files.len();
         for known in &mut self.notes {
             if known.note.has_same_subject(&note) {
@@ -396,8 +396,8 @@ impl ExportPlan {
 }
 
 /// Composes a file name, such as "uh60_correction_2.m".
-fn file_name(prefix: &str, stem: &str, number: &str, extension: &str) -> String {
-    format!("{prefix}{stem}{number}.{extension}")
+fn file_name(prefix: &str, stem: &str, suffix: &str, extension: &str) -> String {
+    format!("{prefix}{stem}{suffix}.{extension}")
 }
 
 /// Derives a file name prefix from a study or dataset name: small ASCII letters, digits and
@@ -473,7 +473,7 @@ mod tests {
         let analysis = analysis(PhaseCorrection::Delay);
         let set = set(folder.path(), &["csv", "m", CHECKSUMS]);
         let plan = set.dry_run(&analysis, &source(), &Unobserved).unwrap();
-        assert_eq!(plan.existing, [""; 0]);
+        assert_eq!(plan.existing_files, [""; 0]);
         let outputs = OutputSet::new(Existing::Keep, Vec::new());
         let paths = plan.write(folder.path(), outputs).unwrap();
         for (path, file) in paths.iter().zip(&plan.files) {
@@ -490,7 +490,7 @@ mod tests {
                 "uh60_checksums_2.sha256"
             ]
         );
-        assert_eq!(again.existing.len(), 3);
+        assert_eq!(again.existing_files.len(), 3);
         let function = again.files[1].contents.as_ref().unwrap();
         assert!(function.head[0].contains("= uh60_correction_2(airspeed_kt"));
         let sums = String::from_utf8(again.files[2].contents.as_ref().unwrap().bytes.clone());

@@ -3,9 +3,10 @@
 //! `requested_models` makes it from an analysis, `model_description` describes it in words.
 //!
 //! The *band* is the range of frequencies over which models are compared. *Delay states* and *lead
-//! states* are the states that delays and lead filters add to the model; *couplings* are an input
-//! mixing and an output feedback (M16). The *price* of leads is the gain that they add above the
-//! band, and the frequency above which the model is not valid (M15.6).
+//! states* are the states that delays and lead filters add to the model. The correction's delays
+//! are those of its channels, the model's *own* delays those of the physics model. *Couplings* are
+//! an input mixing and an output feedback (M16). The *price* of leads is the gain that they add
+//! above the band, and the frequency above which the model is not valid (M15.6).
 
 use gdcm_method::correction::LeadPrice;
 use gdcm_model::dataset::{ConditionId, StateSpace};
@@ -32,9 +33,9 @@ pub(super) struct ExportedModel {
     /// Maximum phase error \[deg\] at the band's upper end due to the Padé approximants or, in
     /// discrete time, to Tustin's rule.
     pub(super) approximation_error_deg: f64,
-    /// Maximum phase lag \[deg\] at the band's upper end due to delays in the condition's own
-    /// correction that the schedule omits.
-    pub(super) left_out_deg: f64,
+    /// Maximum phase lag \[deg\] at the band's upper end due to omitted delays: those in the
+    /// condition's own correction that the schedule lacks.
+    pub(super) omitted_delay_deg: f64,
     pub(super) contents: ExportContents,
     /// The band's upper end, the highest compared frequency \[rad/s\].
     pub(super) band_top_rad_s: f64,
@@ -54,24 +55,23 @@ pub(super) enum ModelCouplings {
     FeedbackAroundDelays,
 }
 
-/// Accuracy of the parts in an exported model. In discrete time (`pade_order` 0), lead filters are
-/// approximated by Tustin's rule; in continuous time, delays by Padé approximants. Everything else
-/// is exact.
+/// Accuracy of the parts in an exported model: everything is exact, except for lead filters in
+/// discrete time (Tustin's rule), and delays in continuous time (Padé approximants).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ModelAccuracy {
-    /// Gains and delays are exact, lead filters follow Tustin's rule.
+    /// Discrete time: lead filters follow Tustin's rule; delays, if any, are exact.
     SampledLeads,
-    /// Gains and lead filters are exact.
+    /// Exact, with lead filters.
     ExactLeads,
-    /// Gains and delays are exact.
+    /// Exact, with delays in the correction.
     ExactDelays,
-    /// Gains are exact; there are no delays.
+    /// Exact, without delays.
     WithoutDelays,
-    /// Gains and the model's own delays are exact: in discrete time, these are whole samples.
+    /// Exact, with delays only in the physics model: in discrete time, these are whole samples.
     ExactOwnDelays,
-    /// Delays are Padé approximants, everything else is exact.
+    /// Continuous time: delays, among them the correction's, are Padé approximants.
     PadeDelays,
-    /// The model's own delays are Padé approximants, everything else is exact.
+    /// Continuous time: delays, only the physics model's own, are Padé approximants.
     PadeOwnDelays,
 }
 
@@ -84,32 +84,40 @@ impl ExportedModel {
     /// Returns the maximum phase error \[deg\] at the band's upper end due to the export, that is,
     /// to Padé approximants or Tustin's rule, and to omitted delays.
     pub(super) fn phase_error_deg(&self) -> f64 {
-        self.approximation_error_deg + self.left_out_deg
+        self.approximation_error_deg + self.omitted_delay_deg
     }
 
-    /// Returns the accuracy of the parts; omitted delays do not count. The first that applies:
-    ///
-    /// 1. leads in discrete time: by Tustin's rule;
-    /// 2. leads without delay states: exact;
-    /// 3. discrete time, or no delay states: exact delays, where there are any;
-    /// 4. delay states: Padé approximants, for the correction's delays or only the model's own.
+    /// Returns the accuracy of the parts; omitted delays do not count.
     pub(super) fn accuracy(&self) -> ModelAccuracy {
-        let has_delays = self.contents.delays != PartSource::None;
-        let has_leads = self.lead_states > 0;
-        if self.pade_order == 0 && has_leads {
+        let is_sampled = self.pade_order == 0;
+        let is_approximated = if is_sampled {
+            self.lead_states > 0
+        } else {
+            self.delay_states > 0
+        };
+        let corrects_delays = self.contents.delays != PartSource::None;
+        if !is_approximated {
+            self.exact_accuracy(corrects_delays)
+        } else if is_sampled {
             ModelAccuracy::SampledLeads
-        } else if has_leads && self.delay_states == 0 {
-            ModelAccuracy::ExactLeads
-        } else if self.pade_order == 0 || self.delay_states == 0 {
-            match (has_delays, self.delay_states) {
-                (true, _) => ModelAccuracy::ExactDelays,
-                (false, 0) => ModelAccuracy::WithoutDelays,
-                (false, _) => ModelAccuracy::ExactOwnDelays,
-            }
-        } else if has_delays {
+        } else if corrects_delays {
             ModelAccuracy::PadeDelays
         } else {
             ModelAccuracy::PadeOwnDelays
+        }
+    }
+
+    /// Returns the accuracy of a model without approximated parts. A correction may have delays
+    /// without states, if all are zero.
+    fn exact_accuracy(&self, corrects_delays: bool) -> ModelAccuracy {
+        if self.lead_states > 0 {
+            ModelAccuracy::ExactLeads
+        } else if corrects_delays {
+            ModelAccuracy::ExactDelays
+        } else if self.delay_states > 0 {
+            ModelAccuracy::ExactOwnDelays
+        } else {
+            ModelAccuracy::WithoutDelays
         }
     }
 

@@ -20,7 +20,7 @@ use crate::export_fault::ExportFault;
 use crate::files::export_contents::ExportContents;
 
 /// Number of airspeed intervals in the table that approximates a lead filter whose time constant
-/// varies with airspeed.
+/// varies with airspeed. More intervals approximate it more closely, but lengthen the files.
 pub(super) const LEAD_INTERVALS: u32 = 100;
 
 /// A schedule, with the dataset and the study from which it comes.
@@ -35,25 +35,29 @@ pub(super) struct ExportedSchedule<'e> {
     pub(super) contents: ExportContents,
 }
 
-/// A gain, or a time \[s\], over airspeed.
+/// A gain, or a time \[s\], over airspeed:
+///
+/// 1. `regression` over airspeed, plus `slope` times the scaled second variable;
+/// 2. the exponential of this sum, if it `is_logarithm`;
+/// 3. limited to the range from 0 to `upper`, if there is an upper limit.
 pub(super) struct Curve {
     /// Dependence on airspeed: a polynomial in the scaled airspeed, or a table.
-    pub(super) figures: Regression,
-    /// Coefficient for the scaled second variable; `None` without one.
+    pub(super) regression: Regression,
+    /// Coefficient of the scaled second variable; `None` without one.
     pub(super) slope: Option<f64>,
-    /// Whether `figures` and `slope` give the value's natural logarithm.
-    pub(super) of_logarithm: bool,
-    /// Upper limit for the value; the lower limit is then zero. `None` if the value is not limited.
+    /// Whether `regression` and `slope` give the value's natural logarithm.
+    pub(super) is_logarithm: bool,
+    /// Upper limit of the value; the lower limit is then zero. `None` if the value is not limited.
     pub(super) upper: Option<Regression>,
 }
 
 impl Curve {
     /// Creates a curve from a regression alone.
-    pub(super) fn plain(figures: Regression) -> Self {
+    pub(super) fn plain(regression: Regression) -> Self {
         Self {
-            figures,
+            regression,
             slope: None,
-            of_logarithm: false,
+            is_logarithm: false,
             upper: None,
         }
     }
@@ -69,12 +73,12 @@ impl Curve {
             Some(upper) => upper.parameters(),
             None => &[],
         };
-        self.figures
+        self.regression
             .parameters()
             .iter()
             .chain(&self.slope)
             .chain(upper)
-            .all(|figure| figure.is_finite())
+            .all(|parameter| parameter.is_finite())
     }
 }
 
@@ -84,7 +88,7 @@ impl ExportedSchedule<'_> {
         let second = self.schedule.second.as_ref();
         Curve {
             slope: second.map(|term| term.slopes[channel]),
-            of_logarithm: self.schedule.settings.quantity == ScheduledQuantity::LnGain,
+            is_logarithm: self.schedule.settings.quantity == ScheduledQuantity::LnGain,
             ..Curve::plain(self.schedule.gains[channel].clone())
         }
     }
@@ -117,17 +121,19 @@ impl ExportedSchedule<'_> {
     /// this channel, `a` equals the denominator's `b`. `None` if the schedule has no leads.
     pub(super) fn zero_s(&self, channel: Channel) -> Option<Curve> {
         let leads = self.schedule.leads.as_ref()?;
-        let least = self.schedule.airspeeds.min_kt;
-        let most = self.schedule.airspeeds.max_kt;
-        if leads.taus_s[channel].parameters().len() == 1 || least == most {
-            return Some(Curve::constant(self.zero_at_s(channel, least)?));
+        let min_kt = self.schedule.airspeeds.min_kt;
+        let max_kt = self.schedule.airspeeds.max_kt;
+        let is_constant = leads.taus_s[channel].parameters().len() == 1;
+        if is_constant || min_kt == max_kt {
+            return Some(Curve::constant(self.zero_at_s(channel, min_kt)?));
         }
         // A table, because the numerator time constant is not a polynomial in airspeed even if the
         // signed delay is.
         let mut airspeeds_kt = Vec::new();
         let mut values = Vec::new();
-        for place in 0..=LEAD_INTERVALS {
-            let airspeed_kt = least + (most - least) * f64::from(place) / f64::from(LEAD_INTERVALS);
+        for point in 0..=LEAD_INTERVALS {
+            let airspeed_kt =
+                min_kt + (max_kt - min_kt) * f64::from(point) / f64::from(LEAD_INTERVALS);
             airspeeds_kt.push(airspeed_kt);
             values.push(self.zero_at_s(channel, airspeed_kt)?);
         }

@@ -14,15 +14,15 @@ use crate::formats::variables::{Array, CellArray, ElementKind, StructArray, Valu
 
 static NULL: Json = Json::Null;
 
-/// Member names that need special conversion.
+/// Names of the members that need special conversion.
 pub(super) struct Layout {
     /// Objects with a member for each channel; they become arrays in channel order.
     pub(super) by_channel: &'static [&'static str],
-    /// Objects with member names that MATLAB does not accept; they become structs with the fields
-    /// `name` and `value`.
-    pub(super) by_name: &'static [&'static str],
-    /// Lists of objects that become a struct of columns rather than a struct array.
-    pub(super) columns: &'static [&'static str],
+    /// Objects with a member for each model, whose name MATLAB may not accept as a field; they
+    /// become structs with the fields `name` and `value`.
+    pub(super) by_model_name: &'static [&'static str],
+    /// Lists of objects that are gathered rather than converted to a struct array.
+    pub(super) gathered_lists: &'static [&'static str],
 }
 
 impl Layout {
@@ -38,7 +38,7 @@ impl Layout {
             Json::Object(members) if self.by_channel.contains(&name) => {
                 self.gathered(&[members.len()], members.values().collect())
             }
-            Json::Object(members) if self.by_name.contains(&name) => {
+            Json::Object(members) if self.by_model_name.contains(&name) => {
                 let mut fields = Fields::default();
                 fields.add("name", cell_of_texts(members.keys().cloned()));
                 fields.add(
@@ -51,27 +51,35 @@ impl Layout {
         }
     }
 
-    /// Converts a list. The first that applies: empty, an empty cell column; objects, gathered if
-    /// `columns` contains `name`, otherwise a struct array; numbers, a row; lists with equal
-    /// lengths, gathered with two indices; anything else, gathered with one.
+    /// Converts a list. The first case that applies:
+    ///
+    /// 1. empty: an empty cell column;
+    /// 2. objects: gathered if `gathered_lists` contains `name`, otherwise a struct array;
+    /// 3. numbers: a row;
+    /// 4. lists with equal lengths: gathered with two indices;
+    /// 5. anything else: gathered with one index.
     fn list(&self, name: &str, entries: &[Json]) -> Value {
+        // Case 1
         if entries.is_empty() {
             return Value::Cell(CellArray {
                 shape: vec![0, 1],
                 values: Vec::new(),
             });
         }
+        // Case 2
         if entries.iter().all(Json::is_object) {
             let entries: Vec<&Json> = entries.iter().collect();
-            return if self.columns.contains(&name) {
+            return if self.gathered_lists.contains(&name) {
                 self.gathered(&[entries.len()], entries)
             } else {
                 self.records(&entries)
             };
         }
+        // Case 3
         if entries.iter().all(is_number) {
             return row(entries.iter().map(number));
         }
+        // Cases 4 and 5
         let rows: Option<Vec<&Vec<Json>>> = entries.iter().map(Json::as_array).collect();
         match rows.as_deref() {
             Some([first, rest @ ..]) if rest.iter().all(|row| row.len() == first.len()) => {
@@ -102,31 +110,41 @@ impl Layout {
         })
     }
 
-    /// Gathers values in an array with this shape; in `leaves`, which holds the value at each
-    /// index, the last index runs fastest. The first that applies: if any is an object, a struct of
-    /// arrays; all numbers, an array; all booleans, a logical array; equally long lists of numbers,
-    /// an array with an additional index; anything else, cells.
+    /// Gathers values in an array with this shape. `leaves` holds the value at each index; the last
+    /// index runs fastest. The first case that applies:
+    ///
+    /// 1. an object among them: a struct with an array for each member name;
+    /// 2. all numbers: an array;
+    /// 3. all booleans: a logical array;
+    /// 4. equally long lists of numbers: an array with an additional index;
+    /// 5. anything else: a cell array.
     fn gathered(&self, shape: &[usize], leaves: Vec<&Json>) -> Value {
+        // Case 1
         if leaves.iter().any(|leaf| leaf.is_object()) {
             return self.gathered_objects(shape, &leaves);
         }
+        // Case 2
         if leaves.iter().all(|leaf| is_number(leaf)) {
             let numbers = leaves.into_iter().map(number).collect();
             return array(shape, numbers, ElementKind::Float);
         }
+        // Case 3
         if let Some(flags) = truth_values(&leaves) {
             return array(shape, flags, ElementKind::Logical);
         }
+        // Case 4
         if let Some(length) = row_length(&leaves) {
             let mut numbers = Vec::new();
             for leaf in leaves {
                 match leaf {
                     Json::Array(list) => numbers.extend(list.iter().map(number)),
+                    // A missing list becomes as many missing numbers.
                     _ => numbers.extend(std::iter::repeat_n(f64::NAN, length)),
                 }
             }
             return array(&[shape, &[length]].concat(), numbers, ElementKind::Float);
         }
+        // Case 5
         let mut values = Vec::with_capacity(leaves.len());
         for leaf in leaves {
             values.push(match leaf {
@@ -134,15 +152,15 @@ impl Layout {
                 leaf => self.value("", leaf),
             });
         }
-        let shape = sides(shape);
+        let shape = matlab_shape(shape);
         Value::Cell(CellArray {
             values: first_index_fastest(&shape, values),
             shape,
         })
     }
 
-    /// Gathers objects in a struct with an array for each member name; members by channel add an
-    /// index to the array.
+    /// Gathers objects in a struct with an array for each member name. An object with a member for
+    /// each channel adds an index, the channel's, to the array.
     fn gathered_objects(&self, shape: &[usize], leaves: &[&Json]) -> Value {
         let mut fields = Fields::default();
         for name in names_of(leaves) {
@@ -150,19 +168,19 @@ impl Layout {
                 .iter()
                 .map(|leaf| leaf.get(name).unwrap_or(&NULL))
                 .collect();
-            let channels = values
+            let channel_count = values
                 .iter()
                 .filter_map(|value| Some(value.as_object()?.len()))
                 .max();
-            let value = match channels {
-                Some(channels) if self.by_channel.contains(&name) => {
+            let value = match channel_count {
+                Some(channel_count) if self.by_channel.contains(&name) => {
                     let mut members = Vec::new();
                     for value in values {
-                        for at in 0..channels {
-                            members.push(member_at(value, at));
+                        for channel in 0..channel_count {
+                            members.push(member_at(value, channel));
                         }
                     }
-                    self.gathered(&[shape, &[channels]].concat(), members)
+                    self.gathered(&[shape, &[channel_count]].concat(), members)
                 }
                 _ => self.gathered(shape, values),
             };
@@ -183,9 +201,9 @@ fn number(json: &Json) -> f64 {
 }
 
 /// Returns an object's member at an index; null if there is none.
-fn member_at(value: &Json, at: usize) -> &Json {
+fn member_at(value: &Json, index: usize) -> &Json {
     match value {
-        Json::Object(members) => members.values().nth(at).unwrap_or(&NULL),
+        Json::Object(members) => members.values().nth(index).unwrap_or(&NULL),
         _ => &NULL,
     }
 }
@@ -231,8 +249,8 @@ fn names_of<'j>(objects: &[&'j Json]) -> Vec<&'j str> {
     names
 }
 
-/// Returns the dimensions of an array in MATLAB, at least two; a list becomes a column.
-fn sides(shape: &[usize]) -> Vec<usize> {
+/// Returns an array's dimensions in MATLAB, at least two; a list becomes a column.
+fn matlab_shape(shape: &[usize]) -> Vec<usize> {
     if let [length] = shape {
         vec![*length, 1]
     } else {
@@ -241,7 +259,7 @@ fn sides(shape: &[usize]) -> Vec<usize> {
 }
 
 fn array(shape: &[usize], numbers: Vec<f64>, kind: ElementKind) -> Value {
-    let shape = sides(shape);
+    let shape = matlab_shape(shape);
     Value::Array(Array {
         re: first_index_fastest(&shape, numbers),
         kind,
@@ -257,8 +275,8 @@ mod tests {
 
     const LAYOUT: Layout = Layout {
         by_channel: &["inputs"],
-        by_name: &["ratios"],
-        columns: &["table"],
+        by_model_name: &["ratios"],
+        gathered_lists: &["table"],
     };
 
     fn field(json: &str, path: &[&str]) -> Value {

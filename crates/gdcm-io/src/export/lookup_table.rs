@@ -3,8 +3,8 @@
 //!
 //! A row is a *breakpoint*: an airspeed and, if scheduled, a value of the second variable
 //! (altitude or mass). A column holds a channel's gain, delay or lead (the numerator time
-//! constant of its lead filter), or an entry of the mixing `M~` among the inputs
-//! (M16). A column's *deviation* is the maximum difference between its linear
+//! constant of its lead filter), or an entry of the mixing `M~` among the inputs (M16). A column's
+//! *deviation*, which texts for users call its error, is the maximum difference between its linear
 //! interpolation and the schedule.
 
 mod csv;
@@ -32,11 +32,11 @@ pub(super) const CSV: ExportFormat = ExportFormat {
     words: "Lookup table over airspeed, CSV",
     options: OPTIONS,
     check_path: |_| Ok(()),
-    contents: |analysis, _| ExportContents::of_scheduled(analysis),
+    correction_parts: |analysis, _| ExportContents::of_scheduled(analysis),
     export: |export| {
         let table = BreakpointTable::from_export(export)?;
         Ok(Exported::bytes(table.summary(), table.csv())
-            .with(table.remarks())
+            .with_remarks(table.remarks())
             .with_notes(table.export_notes(export)))
     },
 };
@@ -50,12 +50,12 @@ pub(super) const MAT: ExportFormat = ExportFormat {
     words: "Lookup table over airspeed, MATLAB data",
     options: OPTIONS,
     check_path: |_| Ok(()),
-    contents: |analysis, _| ExportContents::of_scheduled(analysis),
+    correction_parts: |analysis, _| ExportContents::of_scheduled(analysis),
     export: |export| {
         let table = BreakpointTable::from_export(export)?;
         let variables = [table.variable()];
         Ok(Exported::bytes(table.summary(), mat::write(&variables)?)
-            .with(table.remarks())
+            .with_remarks(table.remarks())
             .with_notes(table.export_notes(export))
             .with_head(variables_head(&variables)))
     },
@@ -63,7 +63,8 @@ pub(super) const MAT: ExportFormat = ExportFormat {
 
 const OPTIONS: &[&str] = &["--breakpoints"];
 
-/// Table deviation, in percent or ms, below which no note is needed.
+/// Table deviation, in percent or ms, below which no note is needed: with one decimal it would be
+/// 0.0.
 const NOTABLE_DEVIATION: f64 = 0.05;
 
 /// Quantity in a column: a gain, an entry in the mixing matrix, or a time \[s\].
@@ -102,7 +103,7 @@ impl Quantity {
     fn deviation(&self, value: f64, truth: f64) -> f64 {
         let difference = value - truth;
         if difference == 0.0 {
-            // Equal values do not deviate, even if both are zero and a percentage is undefined.
+            // If both values are zero, a percentage is undefined.
             0.0
         } else if self.is_time {
             1e3 * difference.abs()
@@ -220,7 +221,7 @@ impl<'e> BreakpointTable<'e> {
         self.columns.push(delay);
         if let Some(zero_s) = self.scheduled.zero_s(channel) {
             let lead = self.column(channel, &LEAD, second_values, |row| {
-                zero_s.figures.at(&schedule.airspeeds, row.airspeed_kt)
+                zero_s.regression.at(&schedule.airspeeds, row.airspeed_kt)
             });
             self.columns.push(lead);
         }
@@ -288,8 +289,9 @@ impl<'e> BreakpointTable<'e> {
         }
     }
 
-    /// Returns the notes on the schedule, followed by the greatest gain error and time error if
-    /// they are notable ([`NOTABLE_DEVIATION`]); errors in the mixing are not noted.
+    /// Returns the notes on the schedule, followed by the greatest deviation of a gain and that of
+    /// a time, if they are notable ([`NOTABLE_DEVIATION`]). Deviations of the mixing appear only in
+    /// [`Self::remarks`].
     fn export_notes(&self, export: &Export<'_>) -> Vec<ExportNote> {
         let mut notes = export.schedule_notes();
         if let Some(column) = self.worst_column(|quantity| quantity == &GAIN) {
@@ -297,7 +299,7 @@ impl<'e> BreakpointTable<'e> {
                 channel: column.channel,
                 error_percent: column.deviation.value,
                 airspeed_kt: column.deviation.airspeed_kt,
-                remedy_kt: self.next_airspeed_kt(column.deviation.airspeed_kt),
+                remedy_kt: self.missing_airspeed_kt(column.deviation.airspeed_kt),
             });
         }
         if let Some(column) = self.worst_column(|quantity| quantity.is_time) {
@@ -305,19 +307,19 @@ impl<'e> BreakpointTable<'e> {
                 channel: column.channel,
                 error_ms: column.deviation.value,
                 airspeed_kt: column.deviation.airspeed_kt,
-                remedy_kt: self.next_airspeed_kt(column.deviation.airspeed_kt),
+                remedy_kt: self.missing_airspeed_kt(column.deviation.airspeed_kt),
             });
         }
         notes
     }
 
-    /// Returns the column with the greatest deviation among the quantities that `is_meant` selects,
-    /// if that deviation is notable.
-    fn worst_column(&self, is_meant: impl Fn(&Quantity) -> bool) -> Option<&Column> {
+    /// Returns the column with the greatest deviation among those whose quantity is `included`, if
+    /// that deviation is notable.
+    fn worst_column(&self, included: impl Fn(&Quantity) -> bool) -> Option<&Column> {
         let mut worst: Option<&Column> = None;
         for column in &self.columns {
             let is_worse = worst.is_none_or(|found| column.deviation.value > found.deviation.value);
-            if is_meant(column.quantity) && is_worse {
+            if included(column.quantity) && is_worse {
                 worst = Some(column);
             }
         }
@@ -326,9 +328,9 @@ impl<'e> BreakpointTable<'e> {
 
     /// Returns an airspeed \[kt\] near `airspeed_kt` that the table lacks: a multiple of 5 kt, else
     /// a whole number, else a tenth of a knot; `None` if the table has all of them.
-    fn next_airspeed_kt(&self, airspeed_kt: f64) -> Option<f64> {
-        for per_knot in [0.2, 1.0, 10.0] {
-            let rounded_kt = (airspeed_kt * per_knot).round() / per_knot;
+    fn missing_airspeed_kt(&self, airspeed_kt: f64) -> Option<f64> {
+        for steps_per_knot in [0.2, 1.0, 10.0] {
+            let rounded_kt = (airspeed_kt * steps_per_knot).round() / steps_per_knot;
             if !self.airspeeds_kt.contains(&rounded_kt) {
                 return Some(rounded_kt);
             }
@@ -338,7 +340,7 @@ impl<'e> BreakpointTable<'e> {
 
     /// Returns the remarks on the schedule, followed by the table's deviations from it.
     fn remarks(&self) -> Vec<String> {
-        let mut remarks = self.scheduled.notes();
+        let mut remarks = self.scheduled.remarks();
         for column in &self.columns {
             if column.deviation.value > 0.0 {
                 remarks.push(format!(

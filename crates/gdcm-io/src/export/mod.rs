@@ -3,8 +3,10 @@
 //! [`ExportFormat`]; the command line, the window and the documentation list the formats in
 //! [`EXPORTERS`].
 //!
-//! A format computes an [`Exported`] from an [`Export`]: the contents of the file with
-//! *remarks*, lines of text for the command line, and *notes*, facts for the list of files.
+//! A format computes an [`Exported`] from an [`Export`]: the bytes of the file, with *remarks*,
+//! lines of text for the command line, and *notes*, facts for the list of files. A correction has
+//! the *parts* gains, delays, leads and couplings; [`ExportContents`] tells which of them a file
+//! contains, and where they come from.
 
 mod all_results;
 mod corrected_models;
@@ -97,8 +99,8 @@ pub struct ExportFormat {
     /// Rejects a file name that does not suit the format; called before the analysis.
     check_path: fn(&Path) -> Result<(), ExportFault>,
     /// Returns the correction parts that the file will contain.
-    contents: fn(&Analysis, &ExportRequest) -> ExportContents,
-    /// Computes the contents of the file.
+    correction_parts: fn(&Analysis, &ExportRequest) -> ExportContents,
+    /// Computes the bytes of the file.
     export: for<'e> fn(&Export<'e>) -> Result<Exported<'e>, ExportFault>,
 }
 
@@ -211,7 +213,8 @@ pub struct Export<'e> {
 }
 
 impl ExportRequest {
-    fn chosen(&self, analysis: &Analysis) -> BTreeSet<ConditionId> {
+    /// Returns the conditions in the request, by default all.
+    fn chosen_conditions(&self, analysis: &Analysis) -> BTreeSet<ConditionId> {
         match &self.conditions {
             Some(conditions) => conditions.clone(),
             None => analysis.study.dataset.ids().collect(),
@@ -248,15 +251,16 @@ impl<'e> Export<'e> {
             Err(error) => return Err(ExportFault::Schedule(*error)),
         };
         analysis
-            .asked_physics()
+            .requested_physics()
             .map_err(|failure| ExportFault::NoPhysics {
                 why: failure.to_string(),
             })?;
-        let couplings = analysis
-            .asked_couplings()
-            .map_err(|error| ExportFault::NoCouplings {
-                why: coupling_error_text(error, &analysis.study.dataset),
-            })?;
+        let couplings =
+            analysis
+                .requested_couplings()
+                .map_err(|error| ExportFault::NoCouplings {
+                    why: coupling_error_text(error, &analysis.study.dataset),
+                })?;
         Ok(ExportedSchedule {
             schedule,
             dataset: &analysis.study.dataset,
@@ -267,15 +271,17 @@ impl<'e> Export<'e> {
     }
 }
 
-type Writing<'e> = Box<dyn FnOnce(&mut dyn Write) -> io::Result<()> + 'e>;
+/// Function that writes a file's bytes.
+type WriteBytes<'e> = Box<dyn FnOnce(&mut dyn Write) -> io::Result<()> + 'e>;
 
-/// File contents, with remarks on them line by line, and with facts for the list of files.
+/// A file's bytes, with remarks on them line by line, and with facts for the list of files.
 pub struct Exported<'e> {
-    write: Writing<'e>,
+    write: WriteBytes<'e>,
     remarks: Vec<String>,
     summary: FileSummary,
     notes: Vec<ExportNote>,
-    /// Description of a binary file, line by line; `None` for text.
+    /// Description of a binary file for the list of files, line by line; `None` for text, whose
+    /// first lines are shown instead.
     head: Option<Vec<String>>,
 }
 
@@ -298,7 +304,7 @@ impl<'e> Exported<'e> {
         Self::new(summary, move |file| file.write_all(&bytes))
     }
 
-    fn with(self, remarks: Vec<String>) -> Self {
+    fn with_remarks(self, remarks: Vec<String>) -> Self {
         Self { remarks, ..self }
     }
 
@@ -325,7 +331,7 @@ pub fn check_export(format: ExportFormat, path: &Path) -> Result<(), FileError> 
 
 /// Returns the correction parts that the requested file will contain.
 pub fn export_contents(analysis: &Analysis, request: &ExportRequest) -> ExportContents {
-    (request.format.contents)(analysis, request)
+    (request.format.correction_parts)(analysis, request)
 }
 
 /// Writes the requested export and returns remarks, line by line. [`export_contents`] describes the

@@ -2,8 +2,9 @@
 //!
 //! It names the parts that are exact and those that are approximated (delays by Padé
 //! approximants, leads by Tustin's rule), with the maximum phase error at the band's upper end,
-//! then omitted delays, couplings (M16), the price of leads (M15.6), and moved physics
-//! parameters (M18).
+//! then omitted delays, couplings (M16), the price of leads (M15.6), and changes of the physics
+//! parameters (M18). The model's *own* delays are those of the physics model; *omitted* delays are
+//! in the condition's own correction, but not in the schedule that corrects the model.
 
 use gdcm_model::dataset::StateSpace;
 use gdcm_model::units::{number, telling};
@@ -23,13 +24,13 @@ impl ExportedModel {
             self.condition,
             self.name,
             self.correction,
-            self.delay_words(),
-            self.left_out_words(),
+            self.accuracy_words(),
+            self.omitted_delay_words(),
             self.couplings.words()
         ) + &self.physics_words()
     }
 
-    /// Describes how the physics parameters were moved in the model; empty if they were not.
+    /// Describes the changes of the physics parameters in the model; empty if there are none.
     fn physics_words(&self) -> String {
         if self.contents.physics.is_empty() {
             return String::new();
@@ -37,22 +38,22 @@ impl ExportedModel {
         format!("; physics model with {}", self.contents.physics.join(", "))
     }
 
-    /// Describes which delays the model omits from the condition's own correction, and their phase
-    /// lag at the band's upper end; empty without omitted delays.
-    fn left_out_words(&self) -> String {
-        if self.left_out_deg == 0.0 {
+    /// States that delays are omitted, with their phase lag at the band's upper end; empty without
+    /// omitted delays.
+    fn omitted_delay_words(&self) -> String {
+        if self.omitted_delay_deg == 0.0 {
             return String::new();
         }
-        let left_out = telling(self.left_out_deg, 3);
-        let top = number(self.band_top_rad_s);
+        let lag_deg = telling(self.omitted_delay_deg, 3);
+        let top_rad_s = number(self.band_top_rad_s);
         format!(
             "; the delays of the condition's own correction are left out, which causes a phase \
-            error of up to {left_out} deg at {top} rad/s"
+            error of up to {lag_deg} deg at {top_rad_s} rad/s"
         )
     }
 
     /// Describes the parts in the model and their accuracy; omitted delays are not mentioned.
-    fn delay_words(&self) -> String {
+    fn accuracy_words(&self) -> String {
         match self.accuracy() {
             ModelAccuracy::SampledLeads => format!(
                 "gains and delays exact, lead filters by Tustin's rule, {}",
@@ -113,17 +114,18 @@ pub(super) fn correction_words(correction: AssessedCorrection) -> &'static str {
 }
 
 impl ModelCouplings {
-    /// Returns how couplings enter a model with the matrices `dynamics`. Only in continuous time
-    /// are its own delays approximated inside the feedback loop.
+    /// Returns how couplings enter the physics model `dynamics`. Only in continuous time are its
+    /// own delays approximated inside the feedback loop.
     pub(super) fn new(analysis: &Analysis, dynamics: &StateSpace) -> Self {
-        let has_delays =
-            !StateSpace::timing(dynamics).is_plain() && dynamics.timing().sample_time_s.is_none();
+        let timing = dynamics.timing();
+        // Timing that is plain has neither a sample time nor delays.
+        let has_pade_delays = !timing.is_plain() && timing.sample_time_s.is_none();
         match (
             analysis.fitted_couplings(),
             analysis.study.settings.couplings,
         ) {
             (None, _) => Self::None,
-            (Some(_), CouplingCorrection::MixingAndFeedback) if has_delays => {
+            (Some(_), CouplingCorrection::MixingAndFeedback) if has_pade_delays => {
                 Self::FeedbackAroundDelays
             }
             (Some(_), CouplingCorrection::MixingAndFeedback) => Self::MixingAndFeedback,

@@ -13,17 +13,21 @@ pub(super) fn number_list(values: &[f64]) -> String {
     numbers.join(", ")
 }
 
+/// First characters of pairs that begin or end a comment or a string (`/*`, `*/` and `//` in C,
+/// `%{` and `%}` in MATLAB, repeated quotation marks in Python), or a trigraph (`??` in C).
+const FIRST_IN_PAIR: [char; 6] = ['*', '/', '?', '%', '"', '\''];
+/// Second characters of these pairs, and the backslash, which may continue a line or begin an
+/// escape.
+const SECOND_IN_PAIR: [char; 9] = ['*', '/', '\\', '?', '%', '{', '}', '"', '\''];
+
 /// Escapes a string for a comment in any language: visible ASCII characters remain, the symbols
 /// that this program uses get ASCII equivalents, and all other characters are written as code
-/// points. The result can neither end nor begin a comment.
+/// points. Blanks separate the pairs of characters that could begin or end a comment.
 pub(super) fn comment(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());
     for character in text.chars() {
         match character {
-            // In pairs, these characters may begin or end comments, continue lines, or be escapes.
-            '*' | '/' | '\\' | '?' | '%' | '{' | '}' | '"' | '\''
-                if plain.ends_with(['*', '/', '?', '%', '"', '\'']) =>
-            {
+            _ if SECOND_IN_PAIR.contains(&character) && plain.ends_with(FIRST_IN_PAIR) => {
                 plain.push(' ');
                 plain.push(character);
             }

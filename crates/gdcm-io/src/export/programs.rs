@@ -4,13 +4,17 @@
 //! ```text
 //! 1  schedule -> curves over airspeed; a curve that is not finite is a fault  (export)
 //! 2  curve -> expression in the language                                      (expression)
-//! 3  heading, names and expressions -> template -> text of the file           (text)
+//! 3  heading, names and expressions -> template -> text of the file           (file_text)
 //!
+//! variables in the expressions:
 //! a  airspeed [kt], clamped to the range of the schedule, or of the mixing
 //! v  a, scaled
 //! b  second variable (altitude or mass), clamped to its range
 //! z  b, scaled to -1 to 1
 //! ```
+//!
+//! The *mixing* `M~` among the inputs and the *feedback* `K` from outputs to inputs are the
+//! couplings (M16).
 
 use std::io;
 use std::path::Path;
@@ -51,7 +55,7 @@ struct Language {
     declares_arrays: bool,
     /// Writes a string as a literal; for MATLAB, whose template contains no string literals, as a
     /// comment.
-    text: fn(&str) -> String,
+    string_literal: fn(&str) -> String,
 }
 
 const MATLAB_LANGUAGE: Language = Language {
@@ -62,7 +66,7 @@ const MATLAB_LANGUAGE: Language = Language {
     polynomial: "gdcm_polynomial",
     table: "gdcm_table",
     declares_arrays: false,
-    text: comment,
+    string_literal: comment,
 };
 const PYTHON_LANGUAGE: Language = Language {
     template: include_str!("templates/python_module.py.jinja"),
@@ -72,7 +76,7 @@ const PYTHON_LANGUAGE: Language = Language {
     polynomial: "_polynomial",
     table: "_table",
     declares_arrays: false,
-    text: python_text,
+    string_literal: python_text,
 };
 const C_LANGUAGE: Language = Language {
     template: include_str!("templates/c_header.h.jinja"),
@@ -82,7 +86,7 @@ const C_LANGUAGE: Language = Language {
     polynomial: "GDCM_POLYNOMIAL",
     table: "GDCM_TABLE",
     declares_arrays: true,
-    text: c_text,
+    string_literal: c_text,
 };
 
 /// Export as a MATLAB function, which is called by the name of its file.
@@ -95,7 +99,7 @@ pub(super) const MATLAB: ExportFormat = ExportFormat {
     words: "MATLAB function of airspeed",
     options: &[],
     check_path: |path| check_function_name(&stem(path)),
-    contents: |analysis, _| ExportContents::of_scheduled(analysis),
+    correction_parts: |analysis, _| ExportContents::of_scheduled(analysis),
     export: |export| MATLAB_LANGUAGE.export(export),
 };
 
@@ -108,7 +112,7 @@ pub(super) const PYTHON: ExportFormat = ExportFormat {
     words: "Python module, a function of airspeed",
     options: &[],
     check_path: |_| Ok(()),
-    contents: |analysis, _| ExportContents::of_scheduled(analysis),
+    correction_parts: |analysis, _| ExportContents::of_scheduled(analysis),
     export: |export| PYTHON_LANGUAGE.export(export),
 };
 
@@ -121,7 +125,7 @@ pub(super) const C: ExportFormat = ExportFormat {
     words: "C header, a function of airspeed",
     options: &[],
     check_path: |_| Ok(()),
-    contents: |analysis, _| ExportContents::of_scheduled(analysis),
+    correction_parts: |analysis, _| ExportContents::of_scheduled(analysis),
     export: |export| C_LANGUAGE.export(export),
 };
 
@@ -136,7 +140,7 @@ impl Language {
         // Step 1.
         scheduled.check()?;
         let name = stem(export.path);
-        let remarks = scheduled.notes_of_curves();
+        let remarks = scheduled.curve_remarks();
         let summary = FileSummary::Function {
             channels: all_channels(scheduled.dataset).len(),
             has_delays: scheduled.schedule.has_delays(),
@@ -150,15 +154,15 @@ impl Language {
         }
         // Steps 2 and 3.
         let write = move |file: &mut dyn io::Write| {
-            file.write_all(self.text(&scheduled, &name)?.as_bytes())
+            file.write_all(self.file_text(&scheduled, &name)?.as_bytes())
         };
         Ok(Exported::new(summary, write)
-            .with(remarks)
+            .with_remarks(remarks)
             .with_notes(notes))
     }
 
     /// Returns the text of the file; `name` is the file name without its extension.
-    fn text(&self, scheduled: &ExportedSchedule<'_>, name: &str) -> io::Result<String> {
+    fn file_text(&self, scheduled: &ExportedSchedule<'_>, name: &str) -> io::Result<String> {
         let airspeeds = &scheduled.schedule.airspeeds;
         let inputs: Vec<Channel> = (0..scheduled.dataset.inputs().len())
             .map(Channel::Input)
@@ -173,7 +177,7 @@ impl Language {
         let values = context! {
             name,
             capitals => name.to_ascii_uppercase(),
-            heading => scheduled.heading(&scheduled.notes_of_curves()),
+            heading => scheduled.heading(&scheduled.curve_remarks()),
             least => number(airspeeds.min_kt),
             most => number(airspeeds.max_kt),
             scaled => scaled_airspeed(airspeeds),
@@ -205,24 +209,25 @@ impl Language {
     fn contained_parts(&self, scheduled: &ExportedSchedule<'_>) -> Value {
         let mut parts = Vec::new();
         for (name, source) in scheduled.contents.parts() {
-            parts.push(context! { name, capitals => name.to_uppercase(), text => (self.text)(source.word()) });
+            let text = (self.string_literal)(source.word());
+            parts.push(context! { name, capitals => name.to_uppercase(), text });
         }
         let mut left_out = Vec::new();
         for words in scheduled.contents.left_out_words(scheduled.dataset) {
-            left_out.push((self.text)(&words));
+            left_out.push((self.string_literal)(&words));
         }
         let mut physics = Vec::new();
         for words in &scheduled.contents.physics {
-            physics.push((self.text)(words));
+            physics.push((self.string_literal)(words));
         }
-        let moved = (self.text)(&scheduled.contents.physics.join(", "));
+        let moved = (self.string_literal)(&scheduled.contents.physics.join(", "));
         context! { parts, physics, moved, left_out }
     }
 
     /// Returns the template values of the couplings: the mixing `M~(V)` and the feedback `K`, both
     /// row by row, with the clamping and scaling of the airspeed on which `M~` depends. An entry of
-    /// `M~` is the mixing curve `own` divided by the sender's curve for itself, `of`, so that the
-    /// diagonal is 1 (`is_unit`).
+    /// `M~`, from the input `from` to the input `to`, is their mixing curve (`numerator`) divided
+    /// by the curve from `from` to itself (`denominator`), so that the diagonal is 1 (`is_unit`).
     fn coupling_values(&self, couplings: &CouplingMatrices) -> Value {
         let airspeeds = couplings.airspeeds();
         let (inputs, outputs) = couplings.feedback().shape();
@@ -233,8 +238,8 @@ impl Language {
             for from in 0..inputs {
                 row.push(context! {
                     column => from,
-                    own => self.mixing_expression(couplings, to, from),
-                    of => self.mixing_expression(couplings, from, from),
+                    numerator => self.mixing_expression(couplings, to, from),
+                    denominator => self.mixing_expression(couplings, from, from),
                     is_unit => to == from,
                 });
             }
@@ -257,11 +262,11 @@ impl Language {
         self.expression(&Curve::plain(couplings.mixing_curve(to, from).clone()))
     }
 
-    /// Returns the template values of the inputs or the outputs; `capital` is "Input" or "Output".
+    /// Returns the template values of the inputs or the outputs; `side` is "Input" or "Output".
     fn side_values(
         &self,
         scheduled: &ExportedSchedule<'_>,
-        capital: &str,
+        side: &str,
         channels: &[Channel],
     ) -> Value {
         let (inputs, outputs) = scheduled.dataset.input_and_output_names();
@@ -274,17 +279,18 @@ impl Language {
             entries.push(context! {
                 index,
                 number => index + 1,
-                text => (self.text)(&name),
+                text => (self.string_literal)(&name),
                 comment => comment(&name),
                 gain => self.expression(&scheduled.gain(channel)),
                 delay => self.expression(&scheduled.delay_s(channel)),
                 zero,
             });
         }
-        let lower = capital.to_lowercase();
+        let lower = side.to_lowercase();
         context! {
-            capital,
-            capitals => capital.to_uppercase(),
+            capital => side,
+            capitals => side.to_uppercase(),
+            // "in" or "out".
             short => lower.trim_end_matches("put"),
             letter => &lower[..1],
             count => channels.len(),
@@ -292,17 +298,16 @@ impl Language {
         }
     }
 
-    /// Returns the expression of a curve in terms of the airspeed `a`, the scaled airspeed `v` and
-    /// the scaled second variable `z`, together with the arrays `c0`, `c1`, … that it uses: the
-    /// regression; plus the slope times `z`; its exponential, if it gives a logarithm; clamped
-    /// between 0 and the upper limit, if there is one.
+    /// Returns the expression of a curve (see [`Curve`]) in terms of the airspeed `a`, the scaled
+    /// airspeed `v` and the scaled second variable `z`, together with the arrays `c0`, `c1`, … that
+    /// it uses.
     fn expression(&self, curve: &Curve) -> Value {
         let mut arrays = Vec::new();
-        let mut value = self.regression_expression(&curve.figures, &mut arrays);
+        let mut value = self.regression_expression(&curve.regression, &mut arrays);
         if let Some(slope) = curve.slope {
             value = format!("{value} + ({}) * z", number(slope));
         }
-        if curve.of_logarithm {
+        if curve.is_logarithm {
             value = format!("{}({value})", self.exp);
         }
         if let Some(upper) = &curve.upper {

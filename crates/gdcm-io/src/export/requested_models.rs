@@ -11,8 +11,9 @@
 //! 5  facts: phase error at the band's upper end, omitted delays, price of leads (M15.6)
 //! ```
 //!
-//! All models are those of the moved dataset: changed by the study's physics parameters (M18),
-//! where there are any.
+//! All models are those of the *moved* dataset: changed by the study's physics parameters (M18),
+//! where there are any. Delays are *omitted* if the condition's own correction has them but the
+//! schedule does not.
 
 use nalgebra::Complex;
 
@@ -40,7 +41,7 @@ pub(super) fn exported_models(
     check_available(analysis)?;
     // The models as compared and corrected: moved by the physics parameters, where there are any.
     let dataset = analysis.moved_dataset();
-    let chosen = request.chosen(analysis);
+    let chosen = request.chosen_conditions(analysis);
     for &id in &chosen {
         if dataset.condition(id).is_none() {
             return Err(ExportFault::NoCondition { condition: id });
@@ -99,12 +100,12 @@ pub fn corrected_response(
 fn check_available(analysis: &Analysis) -> Result<(), ExportFault> {
     let dataset = &analysis.study.dataset;
     analysis
-        .asked_couplings()
+        .requested_couplings()
         .map_err(|error| ExportFault::NoCouplings {
             why: coupling_error_text(error, dataset),
         })?;
     analysis
-        .asked_physics()
+        .requested_physics()
         .map_err(|failure| ExportFault::NoPhysics {
             why: failure.to_string(),
         })?;
@@ -112,10 +113,9 @@ fn check_available(analysis: &Analysis) -> Result<(), ExportFault> {
 }
 
 /// Returns the correction parts in the requested models. If the schedule that they require does not
-/// exist, the parts in an exported schedule: at most couplings and physics parameters if the study
-/// has no schedule at all.
+/// exist, returns those in an exported schedule; the export itself then fails with the reason.
 pub(super) fn contents_of_models(analysis: &Analysis, request: &ExportRequest) -> ExportContents {
-    let conditions: Vec<ConditionId> = request.chosen(analysis).into_iter().collect();
+    let conditions: Vec<ConditionId> = request.chosen_conditions(analysis).into_iter().collect();
     match ExportContents::of_models(analysis, request.correction, &conditions) {
         Ok(contents) => contents,
         Err(_) => ExportContents::of_scheduled(analysis),
@@ -171,7 +171,7 @@ fn exported_model(
         lead_states: corrected.lead_states.iter().map(|(_, states)| states).sum(),
         pade_order: if is_sampled { 0 } else { request.pade.order() },
         approximation_error_deg: corrected.phase_error(band_top_rad_s).to_degrees(),
-        left_out_deg: left_out_phase_deg(&contents, band_top_rad_s),
+        omitted_delay_deg: omitted_delay_deg(&contents, band_top_rad_s),
         contents,
         band_top_rad_s,
         price: price.map(|price| DescribedPrice {
@@ -183,9 +183,9 @@ fn exported_model(
     })
 }
 
-/// Returns the phase lag \[deg\] at `omega` \[rad/s\] due to the omitted delays: the longest input
-/// delay plus the longest output delay over the conditions in `contents`.
-fn left_out_phase_deg(contents: &ExportContents, omega: f64) -> f64 {
+/// Returns the maximum phase lag \[deg\] at `omega` \[rad/s\] due to the omitted delays: that of a
+/// response with the longest omitted input delay and the longest omitted output delay.
+fn omitted_delay_deg(contents: &ExportContents, omega: f64) -> f64 {
     let mut input_s = 0.0_f64;
     let mut output_s = 0.0_f64;
     for part in &contents.left_out {

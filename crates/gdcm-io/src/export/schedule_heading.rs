@@ -1,5 +1,6 @@
 //! Headings for files with an exported schedule: its quantities with meaning and units, origin,
-//! contents, and notes. The quantities are gains, delays, lead filters (M15) and couplings (M16).
+//! contents, and remarks. The quantities are gains, delays, lead filters (M15) and couplings (M16).
+//! *Remarks* are lines of text about the schedule, such as its cautions.
 
 use gdcm_model::message_text::shortened;
 use gdcm_plot::figure::all_channels;
@@ -11,8 +12,8 @@ use super::program_text::{comment, number};
 use crate::software::software;
 
 impl ExportedSchedule<'_> {
-    /// Returns the heading for a file with the schedule, line by line; `notes` are included.
-    pub(super) fn heading(&self, notes: &[String]) -> Vec<String> {
+    /// Returns the heading for a file with the schedule, line by line; it ends with the `remarks`.
+    pub(super) fn heading(&self, remarks: &[String]) -> Vec<String> {
         let airspeeds = &self.schedule.airspeeds;
         let quantities = if self.schedule.has_delays() {
             "Gains and delays"
@@ -56,8 +57,8 @@ impl ExportedSchedule<'_> {
         for words in self.contents.left_out_words(self.dataset) {
             lines.push(format!("Left out: {}.", comment(&words)));
         }
-        for note in notes {
-            lines.push(format!("Note: {}", comment(note)));
+        for remark in remarks {
+            lines.push(format!("Note: {}", comment(remark)));
         }
         lines
     }
@@ -68,6 +69,9 @@ impl ExportedSchedule<'_> {
             return Vec::new();
         };
         let lag_s = leads.design.lag_s();
+        // The maximum step up to which the program itself samples these filters
+        // (`CorrectedModelError::SlowSamples`).
+        let longest_step_s = 0.5 * lag_s;
         let filter = match leads.design.settings().order.number() {
             1 => "L(s) = (1 + a*s)/(1 + b*s)",
             _ => "L(s) = (1 + sqrt(2)*a*s + a^2*s^2)/(1 + sqrt(2)*b*s + b^2*s^2)",
@@ -83,44 +87,45 @@ impl ExportedSchedule<'_> {
             ),
             format!(
                 "In fixed-step code, use Tustin's rule and a step of at most {} s.",
-                number(0.5 * lag_s)
+                number(longest_step_s)
             ),
         ]
     }
 
     /// Returns the remarks on the schedule: missing delays, the price of leads, and cautions.
-    pub(super) fn notes(&self) -> Vec<String> {
+    pub(super) fn remarks(&self) -> Vec<String> {
         let (inputs, outputs) = self.dataset.input_and_output_names();
-        let mut notes = Vec::new();
+        let mut remarks = Vec::new();
         if !self.schedule.has_delays() {
-            notes.push(DELAYS_NOT_SCHEDULED.to_owned());
+            remarks.push(DELAYS_NOT_SCHEDULED.to_owned());
         }
         if let Some(price) = self.schedule.lead_price() {
-            notes.push(price_text(&price, &inputs, &outputs));
+            remarks.push(price_text(&price, &inputs, &outputs));
         }
         for caution in &self.schedule.cautions {
-            notes.push(schedule_caution_text(caution, &inputs, &outputs));
+            remarks.push(schedule_caution_text(caution, &inputs, &outputs));
         }
-        notes
+        remarks
     }
 
     /// Returns whether a lead filter is given as a table over airspeed.
     pub(super) fn has_lead_table(&self) -> bool {
         all_channels(self.dataset).into_iter().any(|channel| {
             self.zero_s(channel)
-                .is_some_and(|zero_s| zero_s.figures.parameters().len() > 1)
+                .is_some_and(|zero_s| zero_s.regression.parameters().len() > 1)
         })
     }
 
-    /// Returns the remarks on the schedule, and a remark if lead filters are given as tables.
-    pub(super) fn notes_of_curves(&self) -> Vec<String> {
-        let mut notes = self.notes();
+    /// Returns the remarks on the schedule as curves: those of [`Self::remarks`], and a remark if
+    /// lead filters are given as tables.
+    pub(super) fn curve_remarks(&self) -> Vec<String> {
+        let mut remarks = self.remarks();
         if self.has_lead_table() {
-            notes.push(format!(
+            remarks.push(format!(
                 "the lead filters are tables over airspeed, linear between {} points",
                 LEAD_INTERVALS + 1
             ));
         }
-        notes
+        remarks
     }
 }

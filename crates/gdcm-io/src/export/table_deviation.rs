@@ -1,8 +1,9 @@
 //! Maximum deviation of a table, interpolated linearly, from the curve that it samples.
 
-/// Number of grid intervals in the search for the maximum deviation.
+/// Number of grid intervals in the search for the maximum deviation, which may lie between any two
+/// points of a table; the grid is finer than the usual table.
 const GRID: usize = 2000;
-/// Number of golden-section steps; each multiplies the interval by 0.618.
+/// Number of golden-section steps; each multiplies the interval by 0.618, all together by 3e-13.
 const STEPS: usize = 60;
 
 /// A table's maximum deviation from its curve, with its position.
@@ -17,41 +18,43 @@ pub(super) struct TableDeviation {
 
 impl TableDeviation {
     /// Finds a table's maximum deviation from `curve` within `range_kt`; the table samples the
-    /// curve at the airspeeds `points`. `measure` compares an interpolated value with the exact
+    /// curve at the airspeeds `points_kt`. `measure` compares an interpolated value with the exact
     /// value.
     ///
     /// A grid search is refined by a golden-section search in the two intervals beside the greatest
     /// grid value. The grid is necessary because the deviation, which is zero at every point of the
     /// table, may have a maximum between any two of them.
     pub(super) fn greatest(
-        points: &[f64],
+        points_kt: &[f64],
         range_kt: [f64; 2],
         curve: impl Fn(f64) -> f64,
         measure: impl Fn(f64, f64) -> f64,
     ) -> Self {
-        let values: Vec<f64> = points.iter().map(|&point| curve(point)).collect();
+        let values: Vec<f64> = points_kt.iter().map(|&kt| curve(kt)).collect();
         let deviation_at = |kt: f64| Self {
-            value: measure(interpolated(points, &values, kt), curve(kt)),
+            value: measure(interpolated(points_kt, &values, kt), curve(kt)),
             airspeed_kt: kt,
         };
-        let [least, most] = range_kt;
-        let step = (most - least) / GRID as f64;
-        let mut greatest = deviation_at(least);
+        // Grid search.
+        let [least_kt, most_kt] = range_kt;
+        let step_kt = (most_kt - least_kt) / GRID as f64;
+        let mut greatest = deviation_at(least_kt);
         for index in 1..=GRID {
-            greatest = greatest.or_greater(deviation_at(least + index as f64 * step));
+            greatest = greatest.or_greater(deviation_at(least_kt + index as f64 * step_kt));
         }
-        let mut low = (greatest.airspeed_kt - step).max(least);
-        let mut high = (greatest.airspeed_kt + step).min(most);
+        // Golden-section search.
+        let mut low_kt = (greatest.airspeed_kt - step_kt).max(least_kt);
+        let mut high_kt = (greatest.airspeed_kt + step_kt).min(most_kt);
         let golden_ratio = (5_f64.sqrt() - 1.0) / 2.0;
         for _ in 0..STEPS {
-            let left = deviation_at(high - golden_ratio * (high - low));
-            let right = deviation_at(low + golden_ratio * (high - low));
+            let left = deviation_at(high_kt - golden_ratio * (high_kt - low_kt));
+            let right = deviation_at(low_kt + golden_ratio * (high_kt - low_kt));
             if left.value > right.value {
                 greatest = greatest.or_greater(left);
-                high = right.airspeed_kt;
+                high_kt = right.airspeed_kt;
             } else {
                 greatest = greatest.or_greater(right);
-                low = left.airspeed_kt;
+                low_kt = left.airspeed_kt;
             }
         }
         greatest
@@ -68,13 +71,13 @@ impl TableDeviation {
 }
 
 /// Interpolates a table linearly at an airspeed; the end values apply outside its range.
-fn interpolated(points: &[f64], values: &[f64], airspeed_kt: f64) -> f64 {
-    let above = points.partition_point(|&point| point <= airspeed_kt);
-    match (above.checked_sub(1), points.get(above)) {
+fn interpolated(points_kt: &[f64], values: &[f64], airspeed_kt: f64) -> f64 {
+    let above = points_kt.partition_point(|&point_kt| point_kt <= airspeed_kt);
+    match (above.checked_sub(1), points_kt.get(above)) {
         (None, _) => values[0],
         (Some(below), None) => values[below],
-        (Some(below), Some(&end)) => {
-            let part = (airspeed_kt - points[below]) / (end - points[below]);
+        (Some(below), Some(&above_kt)) => {
+            let part = (airspeed_kt - points_kt[below]) / (above_kt - points_kt[below]);
             values[below] + part * (values[above] - values[below])
         }
     }

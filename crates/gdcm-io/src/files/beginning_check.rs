@@ -2,13 +2,14 @@
 //!
 //! ```text
 //! n <- 64 KiB
-//! 1  text <- the first n bytes, uncompressed; stop if the file is shorter (it is soon read in full)
+//! 1  text <- the first n bytes, uncompressed; stop if the file is shorter (quick to read)
 //! 2  read text up to its last comma as a dataset or a study
 //! 3  if there is an error other than the end of the text, return it
 //! 4  n <- 16 n; repeat up to 16 MiB
 //! ```
 //!
-//! The checked beginning of a valid file is read again by the full reader.
+//! The checked beginning of a valid file is read again by the full reader. The limit is a
+//! compromise: a longer beginning would show more errors early, but more would be read twice.
 
 use std::io::Read;
 use std::path::Path;

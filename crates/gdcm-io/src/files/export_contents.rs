@@ -1,9 +1,10 @@
 //! Contents of an export: whether its gains, delays, leads and couplings are scheduled or corrected
 //! for each condition alone, and which parts are omitted.
 //!
-//! A part is *own* if it is from each condition's own optimum, *scheduled* if it is from the
-//! schedule over airspeed; couplings (M16) count as scheduled, because they are fitted to several
-//! conditions together. Physics parameters *move* the physics models that are corrected (M18).
+//! The *parts* of a correction are gains, delays, leads and couplings. A part is *own* if it is
+//! from each condition's own optimum, *scheduled* if it is from the schedule over airspeed;
+//! couplings (M16) count as scheduled, because they are fitted to several conditions together.
+//! Physics parameters *move* the physics models that are corrected (M18).
 
 use serde_json::{Value, json};
 
@@ -50,13 +51,13 @@ impl PartSource {
         if is_own { Self::Own } else { Self::None }
     }
 
-    /// Combines a part's source in the conditions' own corrections (`self`) with its source in the
-    /// schedule.
-    fn beside(self, scheduled: Self) -> Self {
-        match (self, scheduled) {
+    /// Combines a part's source in the conditions' own corrections (`self`: `Own` or `None`) with
+    /// its source in the schedule (`Scheduled` or `None`).
+    fn and_scheduled(self, in_schedule: Self) -> Self {
+        match (self, in_schedule) {
             (Self::Own, Self::Scheduled) => Self::OwnAndScheduled,
-            (Self::None, scheduled) => scheduled,
-            (own, _) => own,
+            (Self::None, in_schedule) => in_schedule,
+            (in_own, _) => in_own,
         }
     }
 }
@@ -130,9 +131,9 @@ impl ExportContents {
             }
         }
         Self {
-            gains: own.gains.beside(scheduled.gains),
-            delays: own.delays.beside(scheduled.delays),
-            leads: own.leads.beside(scheduled.leads),
+            gains: own.gains.and_scheduled(scheduled.gains),
+            delays: own.delays.and_scheduled(scheduled.delays),
+            leads: own.leads.and_scheduled(scheduled.leads),
             couplings: own.couplings,
             physics: own.physics,
             left_out,
@@ -144,14 +145,15 @@ impl ExportContents {
     pub fn of_scheduled(analysis: &Analysis) -> Self {
         match &analysis.schedule {
             Ok(schedule) => Self::of_schedule(analysis, schedule),
-            Err(_) => Self::of_none(analysis),
+            Err(_) => Self::of_physics_and_couplings(analysis),
         }
     }
 
     /// Returns the contents of a file with the corrected models for these conditions.
     ///
-    /// 1. Own corrections: no schedule, and no delays or leads are omitted.
-    /// 2. Otherwise the schedule; for a single condition, that of the others if requested.
+    /// 1. Own corrections need no schedule, and omit no delays or leads.
+    /// 2. Otherwise the parts are those of the schedule; for a single condition, of a schedule
+    ///    fitted to the others if requested.
     /// 3. Omitted delays are only those of these conditions, and only if the schedule has none.
     /// 4. Leads are omitted if requested.
     /// 5. Physics parameters are listed only if they move a model in one of these conditions.
@@ -163,20 +165,20 @@ impl ExportContents {
         correction: AssessedCorrection,
         conditions: &[ConditionId],
     ) -> Result<Self, ScheduleError> {
-        let others;
-        let schedule = match (correction, conditions) {
+        // Steps 1 and 2.
+        let mut contents = match (correction, conditions) {
             (AssessedCorrection::Own, _) => {
-                // Step 1, and step 5.
                 return Ok(Self::of_own(analysis).for_conditions(analysis, conditions));
             }
             (AssessedCorrection::ScheduleOfOthers, [condition]) => {
-                others = analysis.schedule_without(*condition)?;
-                &others
+                let schedule = analysis.schedule_without(*condition)?;
+                Self::of_schedule(analysis, &schedule)
             }
-            _ => analysis.schedule.as_ref().map_err(|error| *error)?,
+            _ => {
+                let schedule = analysis.schedule.as_ref().map_err(|error| *error)?;
+                Self::of_schedule(analysis, schedule)
+            }
         };
-        // Step 2.
-        let mut contents = Self::of_schedule(analysis, schedule);
         // Step 3.
         contents
             .left_out
@@ -215,7 +217,7 @@ impl ExportContents {
 
     /// Returns the contents of the physics parameter table, which has no correction parts.
     pub fn of_physics(analysis: &Analysis) -> Self {
-        let mut contents = Self::of_none(analysis);
+        let mut contents = Self::of_physics_and_couplings(analysis);
         contents.couplings = PartSource::None;
         contents
             .left_out
@@ -223,17 +225,19 @@ impl ExportContents {
         contents
     }
 
-    /// Returns the parts that all exports share: couplings and physics parameters, or why they are
-    /// unavailable. No gains, delays and leads.
-    fn of_none(analysis: &Analysis) -> Self {
-        let (couplings, mut left_out) = match analysis.asked_couplings() {
-            Ok(fitted) => (PartSource::scheduled_if(fitted.is_some()), Vec::new()),
+    /// Returns what all exports share: the physics parameters and the couplings that the study
+    /// requests, or why they are unavailable. No gains, delays and leads.
+    fn of_physics_and_couplings(analysis: &Analysis) -> Self {
+        let mut left_out = Vec::new();
+        let couplings = match analysis.requested_couplings() {
+            Ok(fitted) => PartSource::scheduled_if(fitted.is_some()),
             Err(error) => {
                 let why = coupling_error_text(error, &analysis.study.dataset);
-                (PartSource::None, vec![LeftOutPart::Couplings(why)])
+                left_out.push(LeftOutPart::Couplings(why));
+                PartSource::None
             }
         };
-        let physics = match analysis.asked_physics() {
+        let physics = match analysis.requested_physics() {
             Ok(Some(applied)) => applied_value_list(applied),
             Ok(None) => Vec::new(),
             Err(failure) => {
@@ -258,7 +262,7 @@ impl ExportContents {
             gains: PartSource::Own,
             delays: PartSource::own_if(phase != PhaseCorrection::None),
             leads: PartSource::own_if(phase == PhaseCorrection::Lead),
-            ..Self::of_none(analysis)
+            ..Self::of_physics_and_couplings(analysis)
         }
     }
 
@@ -269,7 +273,7 @@ impl ExportContents {
             gains: PartSource::Scheduled,
             delays: PartSource::scheduled_if(schedule.has_delays()),
             leads: PartSource::scheduled_if(schedule.leads.is_some()),
-            ..Self::of_none(analysis)
+            ..Self::of_physics_and_couplings(analysis)
         };
         contents.left_out.extend(
             analysis

@@ -36,7 +36,7 @@ use crate::software::software;
 /// Identification results and the records on which they are based, as written to a file.
 pub struct IdentifiedModels<'f> {
     /// Identified models, in the units of `channels`.
-    pub found: &'f Identification,
+    pub identification: &'f Identification,
     pub channels: &'f RecordChannels,
     /// Records that were used, in the order of `record_uses` in the results.
     pub records: &'f [ConditionRecord],
@@ -94,12 +94,12 @@ pub fn identified_json(results: &IdentifiedModels<'_>) -> io::Result<Vec<u8>> {
 }
 
 fn identified_text<'m>(results: &IdentifiedModels<'m>) -> IdentifiedText<'m> {
-    let found = results.found;
+    let identification = results.identification;
     let mut models = vec![ModelText {
         recommended: Some(true),
-        ..identified_model_text(&found.refined, results.channels)
+        ..identified_model_text(&identification.refined, results.channels)
     }];
-    for model in std::iter::once(&found.unrefined).chain(&found.bundle) {
+    for model in std::iter::once(&identification.unrefined).chain(&identification.bundle) {
         models.push(ModelText {
             recommended: Some(false),
             ..identified_model_text(model, results.channels)
@@ -107,16 +107,16 @@ fn identified_text<'m>(results: &IdentifiedModels<'m>) -> IdentifiedText<'m> {
     }
     let mut records = Vec::with_capacity(results.records.len());
     for (index, record) in results.records.iter().enumerate() {
-        records.push(record_json(found, index, record));
+        records.push(record_json(identification, index, record));
     }
     IdentifiedText {
         format: IDENTIFIED.name,
         version: IDENTIFIED.version,
         software: software(),
         models,
-        measured: measured_text(&found.measured),
-        poles: found.poles.iter().map(pole_json).collect(),
-        validation: validation_json(found),
+        measured: measured_text(&identification.measured),
+        poles: identification.poles.iter().map(pole_json).collect(),
+        validation: validation_json(identification),
         records,
         cautions: results.cautions.iter().map(caution_json).collect(),
         reading: results.reading,
@@ -143,15 +143,20 @@ fn label(rule: &ChannelRule) -> ChannelLabel {
 /// Returns the validation results: cost per degree of freedom for the fitted and the held-out
 /// records, for the latter also normalised with the model's uncertainty; in the time domain, for
 /// the held-out records, each output's fit \[%\] and Theil's coefficient.
-fn validation_json(found: &Identification) -> Value {
-    let (fit_percent, theil) = match &found.validation {
-        Some(in_time) => (json!(in_time.fit_percent), json!(in_time.theil)),
-        None => (json!([]), json!([])),
+fn validation_json(identification: &Identification) -> Value {
+    let in_time = identification.validation.as_ref();
+    let fit_percent = match in_time {
+        Some(in_time) => json!(in_time.fit_percent),
+        None => json!([]),
+    };
+    let theil = match in_time {
+        Some(in_time) => json!(in_time.theil),
+        None => json!([]),
     };
     json!({
-        "fit_per_dof": found.cost,
-        "held_out_per_dof": found.held_out_cost,
-        "held_out_normalised": found.held_out_normalised,
+        "fit_per_dof": identification.cost,
+        "held_out_per_dof": identification.held_out_cost,
+        "held_out_normalised": identification.held_out_normalised,
         "fit_percent": fit_percent,
         "theil": theil,
     })
@@ -232,14 +237,18 @@ fn pole_json(estimate: &PoleEstimate) -> Value {
 
 /// Describes the record at `index`: first and last time \[s\] of the part that forms it and of each
 /// used segment, and in `why_not` its gaps, each with cause and treatment.
-fn record_json(found: &Identification, index: usize, record: &ConditionRecord) -> Value {
-    let mut reasons = Vec::new();
-    if let Some(used) = found.record_uses.get(index) {
+fn record_json(identification: &Identification, index: usize, record: &ConditionRecord) -> Value {
+    let mut gaps = Vec::new();
+    if let Some(used) = identification.record_uses.get(index) {
         for gap in &used.gaps {
-            reasons.push(gap.to_string());
+            gaps.push(gap.to_string());
         }
     }
-    let why_not = Some(reasons.join("; ")).filter(|reasons| !reasons.is_empty());
+    let why_not = if gaps.is_empty() {
+        None
+    } else {
+        Some(gaps.join("; "))
+    };
     let text = json!({
         "name": record.name,
         "file": record.file,
@@ -359,7 +368,7 @@ mod tests {
         let path = folder.path().join("identified.json");
         let mut outputs = OutputSet::new(Existing::Keep, Vec::new());
         let models = IdentifiedModels {
-            found: &found(),
+            identification: &found(),
             channels: &channels,
             records: &[record],
             cautions,

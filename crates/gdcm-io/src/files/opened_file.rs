@@ -71,6 +71,7 @@ pub fn load_any(path: &Path, budget: &ReadingBudget<'_>) -> Result<Opened, FileE
         )?)),
         Some(found) => Err(FileError::Format {
             path: path.to_owned(),
+            // The message adds the outer quotation marks.
             expected: "gdcm-dataset\" or \"gdcm-study",
             found: found.to_owned(),
         }),

@@ -16,39 +16,39 @@ pub(crate) struct Places {
     /// Place of the next element in the file, counted in elements from 0.
     place: usize,
     /// Number of remaining elements.
-    left: usize,
+    remaining: usize,
 }
 
 impl Places {
     /// Creates the places for a file in row-major order (last index fastest); `None` if the element
     /// count overflows.
     pub(crate) fn row_major(shape: &[usize]) -> Option<Self> {
-        let left = element_count(shape)?;
+        let remaining = element_count(shape)?;
         let mut strides = vec![1; shape.len()];
         for axis in (1..shape.len()).rev() {
             strides[axis - 1] = strides[axis] * shape[axis].max(1);
         }
-        Some(Self::new(shape, strides, left))
+        Some(Self::new(shape, strides, remaining))
     }
 
     /// Creates the places for a file in column-major order (first index fastest); `None` if the
     /// element count overflows.
     pub(crate) fn column_major(shape: &[usize]) -> Option<Self> {
-        let left = element_count(shape)?;
+        let remaining = element_count(shape)?;
         let mut strides = vec![1; shape.len()];
         for axis in 1..shape.len() {
             strides[axis] = strides[axis - 1] * shape[axis - 1].max(1);
         }
-        Some(Self::new(shape, strides, left))
+        Some(Self::new(shape, strides, remaining))
     }
 
-    fn new(shape: &[usize], strides: Vec<usize>, left: usize) -> Self {
+    fn new(shape: &[usize], strides: Vec<usize>, remaining: usize) -> Self {
         Self {
             shape: shape.to_vec(),
             strides,
             index: vec![0; shape.len()],
             place: 0,
-            left,
+            remaining,
         }
     }
 }
@@ -69,7 +69,7 @@ impl Iterator for Places {
     type Item = usize;
 
     fn next(&mut self) -> Option<usize> {
-        self.left = self.left.checked_sub(1)?;
+        self.remaining = self.remaining.checked_sub(1)?;
         let place = self.place;
         // Count up like an odometer: advance the first index; after its last value, return it to 0
         // and advance the next index.
@@ -86,7 +86,7 @@ impl Iterator for Places {
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {
-        (self.left, Some(self.left))
+        (self.remaining, Some(self.remaining))
     }
 }
 

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use gdcm_model::message_text::sanitized;
 
 use crate::file_error::FileError;
-use crate::file_reading::kind_of;
+use crate::file_reading::special_file_kind;
 use crate::formats::text::TEXT;
 use crate::formats::{ending_of, importer_of, is_known};
 
@@ -133,8 +133,9 @@ impl Listing<'_> {
             .unwrap_or(&path)
             .to_string_lossy()
             .replace('\\', "/");
+        // The type of the file to which a link leads.
         let target = fs::metadata(&path).map_or(kind, |metadata| metadata.file_type());
-        match kind_of(target) {
+        match special_file_kind(target) {
             Some(kind) => self.skipped.push(format!(
                 "{}: skipped, because this is {kind}, not a file",
                 sanitized(&name)

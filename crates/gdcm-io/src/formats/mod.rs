@@ -86,7 +86,7 @@ static FORMATS: [Importer; 14] = [
     DATAFLASH,
     BLACKBOX,
     FOREIGN_FORMAT,
-    // Before MAT, which takes every file named .mat: Octave's `save` writes text unless told otherwise.
+    // Before MAT, which takes every file named .mat: Octave's `save` writes text by default.
     OCTAVE_TEXT,
     MAT,
     DATAFLASH_TEXT,

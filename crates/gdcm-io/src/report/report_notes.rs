@@ -25,7 +25,7 @@ pub(super) fn report_notes(subject: ReportSubject<'_>) -> Vec<ExportNote> {
             conditions: not_drawn,
         });
     }
-    if let Err(why) = analysis.asked_couplings() {
+    if let Err(why) = analysis.requested_couplings() {
         notes.push(ExportNote::CouplingsLeftOut { why: why.clone() });
     }
     if let Err(why) = &analysis.schedule {

@@ -127,7 +127,7 @@ impl Analysis {
     /// # Errors
     /// [`PhysicsFailure`] if they are unavailable: an export without them would not match the
     /// request.
-    pub fn asked_physics(&self) -> Result<Option<&Arc<AppliedPhysics>>, &PhysicsFailure> {
+    pub fn requested_physics(&self) -> Result<Option<&Arc<AppliedPhysics>>, &PhysicsFailure> {
         match &self.physics {
             None => Ok(None),
             Some(Ok(applied)) => Ok(Some(applied)),
@@ -154,7 +154,7 @@ impl Analysis {
     /// # Errors
     /// [`CouplingError`] if the requested couplings are unavailable: an export without them would
     /// not match the request.
-    pub fn asked_couplings(&self) -> Result<Option<&Arc<FittedCouplings>>, &CouplingError> {
+    pub fn requested_couplings(&self) -> Result<Option<&Arc<FittedCouplings>>, &CouplingError> {
         match &self.couplings {
             None => Ok(None),
             Some(Ok(fitted)) => Ok(Some(fitted)),

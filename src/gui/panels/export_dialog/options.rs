@@ -332,7 +332,7 @@ fn existing_words(state: &State) -> String {
         return String::new();
     };
     let count = plan.file_count();
-    let existing = plan.existing.len();
+    let existing = plan.existing_files.len();
     if existing == 0 {
         "no file exists yet".to_owned()
     } else if state.forms.export.choices.replaces {
@@ -340,7 +340,7 @@ fn existing_words(state: &State) -> String {
     } else {
         format!(
             "{existing} of {count} files exist and are kept; the new names get the suffix {}",
-            plan.number
+            plan.suffix
         )
     }
 }

@@ -1,9 +1,16 @@
 //! Corrected models as arrays for NumPy.
 //!
-//! A correction part (gains, delays, leads, couplings) comes from the schedule, from the
-//! condition's own correction, or is missing; `contains_gains` and the like state this source
-//! for each model, `contains_physics` the changes of the physics parameters (M18), and
-//! `contains_left_out` the omitted parts.
+//! ```text
+//! A_0, B_0, C_0, D_0, StateName_0          model 0; and so on for the others
+//! InputName, InputUnit, OutputName, ...    an entry per channel
+//! Ts, condition, airspeed_kt, ...          an entry per model: the metrics (metrics.rs)
+//! model, correction                        an entry per model: names
+//! contains_gains, contains_delays, ...     an entry per model: source of each correction part,
+//!                                          which is the schedule, the condition's own correction,
+//!                                          or none
+//! contains_physics, contains_left_out      an entry per model: changes of the physics parameters
+//!                                          (M18), and the omitted parts
+//! ```
 
 use gdcm_model::dataset::Dataset;
 
@@ -14,25 +21,24 @@ use crate::files::export_contents::{ExportContents, PartSource};
 use crate::formats::variables::{TextArray, Value, Variable};
 
 /// Correction part name, with the function that returns its source.
-type ContainedPart = (&'static str, fn(&ExportContents) -> PartSource);
+type CorrectionPart = (&'static str, fn(&ExportContents) -> PartSource);
 
 /// Correction parts whose sources the file states.
-const CONTAINED: [ContainedPart; 4] = [
+const CORRECTION_PARTS: [CorrectionPart; 4] = [
     ("gains", |contents| contents.gains),
     ("delays", |contents| contents.delays),
     ("leads", |contents| contents.leads),
     ("couplings", |contents| contents.couplings),
 ];
 
-/// Returns the models as arrays, because NumPy files hold nothing else: `A_0`, `B_0`, `C_0`, `D_0`
-/// and `StateName_0` for model 0, and so on; every other array has an entry per model or channel.
+/// Returns the models as arrays, because NumPy files hold nothing else.
 pub(super) fn model_arrays(models: &[ExportedModel], dataset: &Dataset) -> Vec<Variable> {
     let mut arrays = NamedArrays::default();
-    for (place, model) in models.iter().enumerate() {
+    for (index, model) in models.iter().enumerate() {
         for (name, values) in matrices(model) {
-            arrays.add(format!("{name}_{place}"), array(values));
+            arrays.add(format!("{name}_{index}"), array(values));
         }
-        arrays.add(format!("StateName_{place}"), row_of_texts(&model.states));
+        arrays.add(format!("StateName_{index}"), row_of_texts(&model.states));
     }
     for (side, channels) in [("Input", dataset.inputs()), ("Output", dataset.outputs())] {
         let names = row_of_texts(channels.iter().map(|channel| &channel.name));
@@ -48,12 +54,13 @@ pub(super) fn model_arrays(models: &[ExportedModel], dataset: &Dataset) -> Vec<V
     arrays.add("model".to_owned(), names);
     let corrections = row_of_texts(models.iter().map(|model| model.correction));
     arrays.add("correction".to_owned(), corrections);
-    for (name, source) in CONTAINED {
-        let sources = row_of_texts(models.iter().map(|model| source(&model.contents).word()));
+    for (name, source_of) in CORRECTION_PARTS {
+        let sources = row_of_texts(models.iter().map(|model| source_of(&model.contents).word()));
         arrays.add(format!("contains_{name}"), sources);
     }
-    let moved = row_of_texts(models.iter().map(|model| model.contents.physics.join(", ")));
-    arrays.add("contains_physics".to_owned(), moved);
+    let physics_changes =
+        row_of_texts(models.iter().map(|model| model.contents.physics.join(", ")));
+    arrays.add("contains_physics".to_owned(), physics_changes);
     let left_out = row_of_texts(
         models
             .iter()

@@ -31,7 +31,7 @@ impl BreakpointTable<'_> {
     }
 
     fn write_description(&self, text: &mut String) {
-        for line in self.scheduled.heading(&self.scheduled.notes()) {
+        for line in self.scheduled.heading(&self.scheduled.remarks()) {
             let _ = writeln!(text, "# {line}");
         }
         text.push_str(

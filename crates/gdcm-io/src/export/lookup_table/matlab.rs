@@ -28,7 +28,7 @@ impl BreakpointTable<'_> {
         let mut fields = Fields::default();
         fields.add(
             "about",
-            cell_of_texts(scheduled.heading(&scheduled.notes())),
+            cell_of_texts(scheduled.heading(&scheduled.remarks())),
         );
         fields.add(
             "airspeed_kt",

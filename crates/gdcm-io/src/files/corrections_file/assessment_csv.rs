@@ -1,9 +1,11 @@
 //! `assessment.csv`: a row for each condition and response.
 //!
 //! `G` and `D` are the gain and the delay by which the identified representative differs from the
-//! physics representative (M6); `J` is the mismatch of the nominal model with the identified
-//! representative (M4). A *held* response is constrained to its G and D; a *held-out* condition is
-//! assessed, but not used to fit the schedule.
+//! physics representative (M6), together its *delta*; `J` is the mismatch of the nominal model with
+//! the identified representative (M4). A *held* response is constrained to its G and D; a
+//! *held-out* condition is assessed, but not used to fit the schedule. A condition's *own*
+//! correction is its own optimum. Error bars have a component due to the choice of the physics
+//! model, that is, to its trim, and one due to the identification (M13).
 
 use std::collections::BTreeSet;
 use std::io::{self, Write};
@@ -11,10 +13,11 @@ use std::io::{self, Write};
 use gdcm_method::schedule::CostChange;
 use gdcm_method::uncertainty::{Bar, Scalar};
 use gdcm_model::dataset::{ConditionId, Pair};
+use gdcm_model::number_format::full_precision;
 use gdcm_study::Analysis;
 use gdcm_words::assessment::not_assessed_text;
 
-use super::csv_condition::{ConditionResults, cell, condition_results};
+use super::csv_condition::{ConditionResults, condition_results};
 use crate::csv_text::write_records;
 
 /// A row: one response in one condition.
@@ -51,27 +54,27 @@ const RESPONSE_COLUMNS: [ResponseColumn; 36] = [
             .to_string()
     }),
     ("G", |row| {
-        cell(
+        full_precision(
             row.results
                 .result()
                 .and_then(|result| result.wanted_gain(row.pair)),
         )
     }),
     ("D_s", |row| {
-        cell(
+        full_precision(
             row.results
                 .result()
                 .and_then(|result| result.comparison.delta.delay_s[row.pair]),
         )
     }),
     ("net_gain", |row| {
-        cell(row.results.own().map(|own| own.net_gain(row.pair)))
+        full_precision(row.results.own().map(|own| own.net_gain(row.pair)))
     }),
     ("net_delay_s", |row| {
-        cell(row.results.own().map(|own| own.net_delay_s(row.pair)))
+        full_precision(row.results.own().map(|own| own.net_delay_s(row.pair)))
     }),
     ("scheduled_net_gain", |row| {
-        cell(
+        full_precision(
             row.results
                 .scheduled
                 .as_ref()
@@ -79,7 +82,7 @@ const RESPONSE_COLUMNS: [ResponseColumn; 36] = [
         )
     }),
     ("scheduled_net_delay_s", |row| {
-        cell(
+        full_precision(
             row.results
                 .scheduled
                 .as_ref()
@@ -87,27 +90,29 @@ const RESPONSE_COLUMNS: [ResponseColumn; 36] = [
         )
     }),
     ("J_mag_uncorrected", |row| {
-        cell(row.change().map(|change| change.uncorrected.magnitude))
+        full_precision(row.change().map(|change| change.uncorrected.magnitude))
     }),
     ("J_phase_uncorrected", |row| {
-        cell(row.change().map(|change| change.uncorrected.phase))
+        full_precision(row.change().map(|change| change.uncorrected.phase))
     }),
     ("J_mag_scheduled", |row| {
-        cell(row.change().map(|change| change.corrected.magnitude))
+        full_precision(row.change().map(|change| change.corrected.magnitude))
     }),
     ("J_phase_scheduled", |row| {
-        cell(row.change().map(|change| change.corrected.phase))
+        full_precision(row.change().map(|change| change.corrected.phase))
     }),
     ("dJ_mag", |row| {
-        cell(row.change().map(|change| change.magnitude()))
+        full_precision(row.change().map(|change| change.magnitude()))
     }),
     ("dJ_phase", |row| {
-        cell(row.change().map(|change| change.phase()))
+        full_precision(row.change().map(|change| change.phase()))
     }),
-    ("dJ", |row| cell(row.change().map(|change| change.total()))),
+    ("dJ", |row| {
+        full_precision(row.change().map(|change| change.total()))
+    }),
     ("left_out", |row| row.left_out()),
     ("D_band_s", |row| {
-        cell(
+        full_precision(
             row.results
                 .result()
                 .and_then(|result| result.comparison.delta.band_delay_s[row.pair]),
@@ -146,13 +151,13 @@ const RESPONSE_COLUMNS: [ResponseColumn; 36] = [
             .deviation(Scalar::NetGain(row.pair), |bar| bar.identification)
     }),
     ("degrees_of_freedom", |row| {
-        cell(
+        full_precision(
             row.results
                 .bar(Scalar::NetGain(row.pair))
                 .and_then(Bar::degrees_of_freedom),
         )
     }),
-    ("left_in_band", |row| cell(row.left_in_band())),
+    ("left_in_band", |row| full_precision(row.left_in_band())),
     ("D_band_low_s", |row| {
         row.results.lower_end(Scalar::BandDelay(row.pair))
     }),
@@ -160,10 +165,10 @@ const RESPONSE_COLUMNS: [ResponseColumn; 36] = [
         row.results.upper_end(Scalar::BandDelay(row.pair))
     }),
     ("gain_above_band_db", |row| {
-        cell(row.results.price().map(|price| price.of_pair_db(row.pair)))
+        full_precision(row.results.price().map(|price| price.of_pair_db(row.pair)))
     }),
     ("not_valid_above_rad_s", |row| {
-        cell(row.results.price().map(|price| price.limit_rad_s))
+        full_precision(row.results.price().map(|price| price.limit_rad_s))
     }),
 ];
 
@@ -206,9 +211,9 @@ impl ResponseRow<'_> {
         }
     }
 
-    /// Returns the half-width of the range of `ln |H_ref / H_sim|` over the band (identified over
-    /// physics representative), the mismatch that remains because one gain cannot match every
-    /// frequency; `None` without uncertainty.
+    /// Returns the half-width of the range of `ln |H_ref / H_sim|` over the frequency band, where
+    /// `H_ref` is the identified and `H_sim` the physics representative: the mismatch that remains
+    /// because a single gain cannot match every frequency. `None` without error bars.
     fn left_in_band(&self) -> Option<f64> {
         let uncertainty = self.results.analysis.uncertainty.as_ref()?;
         let id = self.results.condition.id();

@@ -1,8 +1,10 @@
 //! The part of `corrections.json` about a condition.
 //!
 //! A condition has a bundle of physics models and a bundle of identified models; their
-//! *representatives* are compared (M5). Models are *rejected* by the analyst, or *set aside* by
-//! the analysis. `docs/reference/corrections.md` describes the keys.
+//! *representatives* are compared (M5), which differ by the gain G and the delay D (M6). Models are
+//! *rejected* by the engineer, or *set aside* by the analysis. A *held* response is constrained to
+//! its G and D; a *held-out* condition is not used to fit the schedule.
+//! `docs/reference/corrections.md` describes the keys.
 
 use serde_json::{Map, Value, json};
 
@@ -24,11 +26,11 @@ use super::uncertainty::{bars, net_gain_bar};
 use crate::json_empty_members::without_empty;
 
 pub(super) fn condition_json(
-    names: &LabelledAnalysis<'_>,
+    labelled: &LabelledAnalysis<'_>,
     condition: &Condition,
     result: &ConditionAnalysis,
 ) -> Value {
-    let study = &names.analysis.study;
+    let study = &labelled.analysis.study;
     let id = condition.id();
     let choice = study.choice(id);
     let correction = &result.correction;
@@ -45,29 +47,30 @@ pub(super) fn condition_json(
         "reasons": rejection_reasons(choice),
         "suggested_outliers": result.suggested(),
         "discontinuity": discontinuity(condition, result),
-        "set_aside": set_aside(names, result),
+        "set_aside": set_aside(labelled, result),
         "sources": sources(condition),
         "scheduled": choice.scheduled,
         "held_out": choice.held_out,
-        "held": names.pairs(result.held().marked()),
+        "held": labelled.pairs(result.held().marked()),
+        // With leads, G of the response that remains after them.
         "G": rows(&result.gain_problem.delta, |gain| *gain),
         "D_s": rows(&result.comparison.delta.delay_s, |delay| *delay),
         "D_band_s": rows(&result.comparison.delta.band_delay_s, |delay| *delay),
         "gain_bounds": [result.gain_bounds().lower, result.gain_bounds().upper],
         "delay_upper_s": result.delay_upper_s(),
-        "gains": names.gains(correction),
-        "delays_s": names.delays_s(correction),
-        "lead": names.leads(correction),
-        "gain_solution": gain_solution(names, result),
-        "delay_solution": delay_solution(names, result),
-        "net_gains": net_gains(names, id, result),
-        "bars": bars(names, id),
-        "couplings": condition_couplings(names.analysis, result),
+        "gains": labelled.gains(correction),
+        "delays_s": labelled.delays_s(correction),
+        "lead": labelled.leads(correction),
+        "gain_solution": gain_solution(labelled, result),
+        "delay_solution": delay_solution(labelled, result),
+        "net_gains": net_gains(labelled, id, result),
+        "bars": bars(labelled, id),
+        "couplings": condition_couplings(labelled.analysis, result),
         "J": {
             "uncorrected": costs(&result.comparison.representative.cost),
             "corrected": costs(&corrected_costs),
         },
-        "cautions": cautions(names, result),
+        "cautions": cautions(labelled, result),
     });
     without_empty(
         members,
@@ -94,45 +97,51 @@ fn rejection_reasons(choice: &ConditionChoice) -> Value {
 }
 
 /// Returns the models that the analysis excluded automatically, with reasons.
-fn set_aside(names: &LabelledAnalysis<'_>, result: &ConditionAnalysis) -> Value {
+fn set_aside(labelled: &LabelledAnalysis<'_>, result: &ConditionAnalysis) -> Value {
     let mut models = Vec::new();
     for caution in &result.cautions {
         if let Caution::SetAside { model, .. } = caution {
-            models.push(json!({"model": model.name, "why": caution_words(names, caution)}));
+            models.push(json!({"model": model.name, "why": caution_words(labelled, caution)}));
         }
     }
     Value::Array(models)
 }
 
-fn caution_words(names: &LabelledAnalysis<'_>, caution: &Caution) -> String {
-    caution_text(caution, |pair| names.analysis.study.dataset.pair_name(pair))
+fn caution_words(labelled: &LabelledAnalysis<'_>, caution: &Caution) -> String {
+    caution_text(caution, |pair| {
+        labelled.analysis.study.dataset.pair_name(pair)
+    })
 }
 
 /// Returns channels with an apparent difference in sign or unit between the bundles, followed by
 /// the cautions about the results and about leads.
-fn cautions(names: &LabelledAnalysis<'_>, result: &ConditionAnalysis) -> Value {
-    let study = &names.analysis.study;
+fn cautions(labelled: &LabelledAnalysis<'_>, result: &ConditionAnalysis) -> Value {
+    let study = &labelled.analysis.study;
     let mut cautions = Vec::new();
     for doubt in &result.doubts {
         cautions.push(doubt_text(doubt, &study.dataset));
     }
     for caution in &result.cautions {
-        cautions.push(caution_words(names, caution));
+        cautions.push(caution_words(labelled, caution));
     }
     cautions.extend(lead_cautions(study, result));
     json!(cautions)
 }
 
 /// Returns each response's net gain, with its interval if available.
-fn net_gains(names: &LabelledAnalysis<'_>, id: ConditionId, result: &ConditionAnalysis) -> Value {
+fn net_gains(
+    labelled: &LabelledAnalysis<'_>,
+    id: ConditionId,
+    result: &ConditionAnalysis,
+) -> Value {
     let mut net_gains = Vec::new();
     for pair in result.held().pairs() {
         let mut members = Map::new();
         members.insert("gain".to_owned(), json!(result.correction.net_gain(pair)));
-        if let Some(Value::Object(bar)) = net_gain_bar(names.analysis, id, pair) {
+        if let Some(Value::Object(bar)) = net_gain_bar(labelled.analysis, id, pair) {
             members.extend(bar);
         }
-        net_gains.push(names.response_entries(pair, Value::Object(members)));
+        net_gains.push(labelled.response_entries(pair, Value::Object(members)));
     }
     Value::Array(net_gains)
 }

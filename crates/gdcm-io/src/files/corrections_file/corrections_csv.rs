@@ -1,8 +1,10 @@
 //! `corrections.csv`: a row for each condition and channel.
 //!
 //! A *signed delay* `tau` is a channel's delay or, if negative, its lead, which a filter
-//! provides (M15). `u_…` are standard deviations due to the choice of the physics model and to
-//! the identification (M13).
+//! provides (M15). A condition's *own* correction is its own optimum. The *price* of its leads is
+//! the gain that they add above the band, and the frequency above which the model is not valid
+//! (M15.6). `u_…` are standard deviations due to the choice of the physics model, that is, to its
+//! trim, and to the identification (M13).
 
 use std::collections::BTreeSet;
 use std::io::{self, Write};
@@ -10,11 +12,12 @@ use std::io::{self, Write};
 use gdcm_method::correction::{Channel, ChannelCorrection};
 use gdcm_method::uncertainty::Scalar;
 use gdcm_model::dataset::ConditionId;
+use gdcm_model::number_format::full_precision;
 use gdcm_model::response::LeadFilter;
 use gdcm_plot::figure::all_channels;
 use gdcm_study::Analysis;
 
-use super::csv_condition::{ConditionResults, cell, condition_results};
+use super::csv_condition::{ConditionResults, condition_results};
 use crate::csv_text::write_records;
 
 /// A row: one channel in one condition.
@@ -37,13 +40,13 @@ const CHANNEL_COLUMNS: [ChannelColumn; 23] = [
     }),
     ("channel", |row| row.name()),
     ("gain", |row| {
-        cell(row.results.own().map(|own| own.gain(row.channel)))
+        full_precision(row.results.own().map(|own| own.gain(row.channel)))
     }),
     ("delay_s", |row| {
-        cell(row.results.own().map(|own| own.pure_delay_s(row.channel)))
+        full_precision(row.results.own().map(|own| own.pure_delay_s(row.channel)))
     }),
     ("scheduled_gain", |row| {
-        cell(
+        full_precision(
             row.results
                 .scheduled
                 .as_ref()
@@ -51,26 +54,28 @@ const CHANNEL_COLUMNS: [ChannelColumn; 23] = [
         )
     }),
     ("scheduled_delay_s", |row| {
-        cell(
+        full_precision(
             row.results
                 .scheduled
                 .as_ref()
                 .map(|scheduled| scheduled.pure_delay_s(row.channel)),
         )
     }),
-    ("tau_s", |row| cell(row.tau_s(row.results.own()))),
-    ("lead_s", |row| cell(row.filter().map(LeadFilter::lead_s))),
+    ("tau_s", |row| full_precision(row.tau_s(row.results.own()))),
+    ("lead_s", |row| {
+        full_precision(row.filter().map(LeadFilter::lead_s))
+    }),
     ("zero_rad_s", |row| {
-        cell(row.filter().map(LeadFilter::zero_rad_s))
+        full_precision(row.filter().map(LeadFilter::zero_rad_s))
     }),
     ("lag_rad_s", |row| {
-        cell(row.filter().map(LeadFilter::lag_rad_s))
+        full_precision(row.filter().map(LeadFilter::lag_rad_s))
     }),
     ("gain_at_infinity_db", |row| {
-        cell(row.filter().map(LeadFilter::gain_at_infinity_db))
+        full_precision(row.filter().map(LeadFilter::gain_at_infinity_db))
     }),
     ("scheduled_tau_s", |row| {
-        cell(row.tau_s(row.results.scheduled.as_ref()))
+        full_precision(row.tau_s(row.results.scheduled.as_ref()))
     }),
     ("gain_low", |row| {
         row.results.lower_end(Scalar::ChannelGain(row.channel))
@@ -93,10 +98,10 @@ const CHANNEL_COLUMNS: [ChannelColumn; 23] = [
             .deviation(Scalar::ChannelGain(row.channel), |bar| bar.identification)
     }),
     ("gain_above_band_db", |row| {
-        cell(row.results.price().map(|price| price.gains_db[row.channel]))
+        full_precision(row.results.price().map(|price| price.gains_db[row.channel]))
     }),
     ("not_valid_above_rad_s", |row| {
-        cell(row.results.price().map(|price| price.limit_rad_s))
+        full_precision(row.results.price().map(|price| price.limit_rad_s))
     }),
     ("contains", |row| row.results.contains.clone()),
 ];
@@ -168,10 +173,10 @@ impl ChannelRow<'_> {
             Channel::Input(to) => {
                 let mut cells = Vec::new();
                 for from in 0..mixing.ncols() {
-                    cells.push(cell(Some(mixing[(to, from)])));
+                    cells.push(full_precision(Some(mixing[(to, from)])));
                 }
                 for from in 0..feedback.ncols() {
-                    cells.push(cell(Some(feedback[(to, from)])));
+                    cells.push(full_precision(Some(feedback[(to, from)])));
                 }
                 cells
             }

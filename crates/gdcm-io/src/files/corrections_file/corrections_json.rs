@@ -30,18 +30,18 @@ use crate::software::software;
 /// `sha256` is the dataset file's hash.
 pub fn corrections(analysis: &Analysis, sha256: &str, chosen: &BTreeSet<ConditionId>) -> Value {
     let dataset = &analysis.study.dataset;
-    let names = LabelledAnalysis::new(analysis);
+    let labelled = LabelledAnalysis::new(analysis);
     let mut conditions = Vec::new();
     let mut failed = Vec::new();
     let mut assessed = Vec::new();
-    let mut left_out = Vec::new();
+    let mut not_assessed = Vec::new();
     for condition in dataset.conditions() {
         let id = condition.id();
         if !chosen.contains(&id) {
             continue;
         }
         match analysis.conditions.get(&id) {
-            Some(Ok(result)) => conditions.push(condition_json(&names, condition, result)),
+            Some(Ok(result)) => conditions.push(condition_json(&labelled, condition, result)),
             Some(Err(failure)) => {
                 let why = failure_text(failure, dataset);
                 failed.push(json!({"id": id.0, "code": failure.code(), "why": why}));
@@ -52,7 +52,7 @@ pub fn corrections(analysis: &Analysis, sha256: &str, chosen: &BTreeSet<Conditio
             Some(Ok(changes)) => assessed.push(assessment_json(condition, changes)),
             Some(Err(why)) => {
                 let why = not_assessed_text(why, dataset);
-                left_out.push(json!({"id": id.0, "why": why}));
+                not_assessed.push(json!({"id": id.0, "why": why}));
             }
             None => {}
         }
@@ -75,9 +75,9 @@ pub fn corrections(analysis: &Analysis, sha256: &str, chosen: &BTreeSet<Conditio
         "couplings": couplings(analysis),
         "conditions": conditions,
         "failed": failed,
-        "schedule": schedule.map(|schedule| schedule_json(&names, schedule)),
-        "assessment": {"conditions": assessed, "left_out": left_out},
-        "uncertainty": uncertainty(&names),
+        "schedule": schedule.map(|schedule| schedule_json(&labelled, schedule)),
+        "assessment": {"conditions": assessed, "left_out": not_assessed},
+        "uncertainty": uncertainty(&labelled),
     });
     without_empty(
         corrections,
@@ -88,11 +88,11 @@ pub fn corrections(analysis: &Analysis, sha256: &str, chosen: &BTreeSet<Conditio
 /// Converts a channel correction, for example the schedule's at an airspeed, to JSON: `gains`,
 /// `delays_s`, and with leads `lead`, as for a condition in `corrections.json`.
 pub fn channel_correction(analysis: &Analysis, correction: &ChannelCorrection) -> Value {
-    let names = LabelledAnalysis::new(analysis);
+    let labelled = LabelledAnalysis::new(analysis);
     json!({
-        "gains": names.gains(correction),
-        "delays_s": names.delays_s(correction),
-        "lead": names.leads(correction),
+        "gains": labelled.gains(correction),
+        "delays_s": labelled.delays_s(correction),
+        "lead": labelled.leads(correction),
     })
 }
 

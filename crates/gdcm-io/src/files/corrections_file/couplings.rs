@@ -3,9 +3,9 @@
 //!
 //! Couplings are an input mixing, which depends on airspeed, and a feedback from outputs to
 //! inputs, which does not; both are fitted to several conditions together. The benefit is mean
-//! J without and with them, on-axis and off-axis (`others`): under each condition's own
-//! correction, under the schedule, and in each condition with everything fitted to the others
-//! (`left_out`).
+//! J without and with them, over the on-axis responses and over all others (`others`): under each
+//! condition's own correction, under the schedule, and in each condition with everything fitted to
+//! the other conditions (`left_out`).
 
 use nalgebra::{DMatrix, Scalar};
 use serde_json::{Value, json};
@@ -18,7 +18,6 @@ use gdcm_study::{Analysis, ConditionAnalysis};
 use gdcm_words::coupling_error::coupling_error_text;
 use gdcm_words::coupling_remark::coupling_remark_text;
 
-use super::pair_rows::rows_of;
 use crate::json_empty_members::without_empty;
 
 /// Returns the study's feedback, in the dataset's units, with the benefit of the couplings; null
@@ -69,12 +68,14 @@ pub(super) fn couplings(analysis: &Analysis) -> Value {
     )
 }
 
-/// Returns a matrix as a list of rows, one per receiving input. [`rows_of`] calls the row index
-/// `output` and the column index `input`, whatever the matrix holds.
+/// Returns a matrix as a list of rows, one per receiving input.
 fn matrix_rows<T: Scalar + Into<Value>>(matrix: &DMatrix<T>) -> Value {
-    rows_of(matrix.nrows(), matrix.ncols(), |at| {
-        matrix[(at.output, at.input)].clone().into()
-    })
+    let mut rows = Vec::with_capacity(matrix.nrows());
+    for row in matrix.row_iter() {
+        let entries: Vec<Value> = row.iter().cloned().map(Into::into).collect();
+        rows.push(Value::Array(entries));
+    }
+    Value::Array(rows)
 }
 
 pub(super) fn axis_cost(cost: AxisCost) -> Value {

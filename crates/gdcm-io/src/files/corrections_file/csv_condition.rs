@@ -10,6 +10,7 @@ use std::collections::BTreeSet;
 use gdcm_method::correction::{ChannelCorrection, LeadPrice};
 use gdcm_method::uncertainty::{Bar, Scalar, VarianceComponent};
 use gdcm_model::dataset::{Condition, ConditionId};
+use gdcm_model::number_format::full_precision;
 use gdcm_study::{Analysis, ConditionAnalysis};
 
 use crate::files::export_contents::ExportContents;
@@ -76,12 +77,12 @@ impl ConditionResults<'_> {
     /// Formats the total interval's lower end: a factor for a gain, seconds for a delay. Empty if
     /// there is no interval.
     pub(super) fn lower_end(&self, scalar: Scalar) -> String {
-        cell(self.interval(scalar).map(|[lower, _]| lower))
+        full_precision(self.interval(scalar).map(|[lower, _]| lower))
     }
 
     /// Formats the total interval's upper end, as [`Self::lower_end`].
     pub(super) fn upper_end(&self, scalar: Scalar) -> String {
-        cell(self.interval(scalar).map(|[_, upper]| upper))
+        full_precision(self.interval(scalar).map(|[_, upper]| upper))
     }
 
     /// Returns the total interval: factors for a gain, whose bar is an interval for its natural
@@ -104,16 +105,6 @@ impl ConditionResults<'_> {
         component: fn(&Bar) -> Option<VarianceComponent>,
     ) -> String {
         let component = self.bar(scalar).and_then(component);
-        cell(component.map(|component| component.variance.sqrt()))
-    }
-}
-
-/// Formats a value at full precision; empty if it is missing or not finite.
-pub(super) fn cell(value: Option<f64>) -> String {
-    match value {
-        // `Debug` writes very large and small values with an exponent, where `Display` would write
-        // hundreds of zeros.
-        Some(value) if value.is_finite() => format!("{value:?}"),
-        _ => String::new(),
+        full_precision(component.map(|component| component.variance.sqrt()))
     }
 }

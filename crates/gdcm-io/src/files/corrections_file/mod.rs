@@ -10,6 +10,7 @@ mod csv_condition;
 mod labelled_analysis;
 mod pair_rows;
 mod physics;
+mod physics_csv;
 mod schedule;
 mod solutions;
 mod uncertainty;
@@ -28,7 +29,7 @@ use crate::output_set::{OutputSet, make_directory};
 pub use self::assessment_csv::write_assessment_csv;
 pub use self::corrections_csv::write_corrections_csv;
 pub use self::corrections_json::{channel_correction, corrections};
-pub(crate) use self::physics::write_physics_csv;
+pub(crate) use self::physics_csv::write_physics_csv;
 
 const NAME: &str = "gdcm-corrections";
 const VERSION: u64 = 1;

@@ -1,22 +1,19 @@
-//! The part of `corrections.json` about named physics parameters, and `physics.csv` (M18.5).
+//! The part of `corrections.json` about named physics parameters (M18.5).
 //!
 //! A physics parameter, such as a moment of inertia, moves the physics models; `z` is its
 //! change in plausible standard deviations. The diagnosis fits `z` to all conditions, and
 //! *names* a parameter as wrong if the evidence suffices; otherwise `why_not` gives the reason.
 //! A *run* is a physics model with a single parameter moved, from which its effect is learned;
-//! a *rerun* has several moved together, and checks the predicted effect.
-
-use std::collections::BTreeSet;
-use std::io::{self, Write};
+//! a *rerun* has several moved together, and checks the predicted effect. `not_used` lists the
+//! runs and conditions that take no part in the fit; `left_out` is the benefit in each condition
+//! with everything fitted to the others. `docs/reference/corrections.md` describes all keys.
 
 use serde_json::{Map, Value, json};
 
 use gdcm_method::correction::Channels;
-use gdcm_method::physics::OfferedParameter;
 use gdcm_model::dataset::Dataset;
-use gdcm_model::number_format::full_precision;
 use gdcm_study::Analysis;
-use gdcm_study::results::applied_physics::{AppliedPhysics, AppliedValue};
+use gdcm_study::results::applied_physics::AppliedPhysics;
 use gdcm_study::results::moved_models::MovedModels;
 use gdcm_study::results::physics_assessment::PhysicsAssessment;
 use gdcm_study::results::physics_findings::{DiagnosedParameter, LeftOutData, PhysicsFindings};
@@ -26,52 +23,17 @@ use gdcm_words::physics::{
 };
 
 use super::couplings::{axis_cost, correction_cost};
-use crate::csv_text::write_records;
 use crate::json_empty_members::without_empty;
 
-/// Columns in `physics.csv`.
-const COLUMNS: [&str; 21] = [
-    "parameter",
-    "unit",
-    "on",
-    "change",
-    "lower",
-    "upper",
-    "z",
-    "plausible_sd",
-    "named",
-    "why_not",
-    "ratio_alone",
-    "step",
-    "gain",
-    "learned",
-    "channels_can_take",
-    "variance_condition",
-    "variance_output",
-    "variance_input",
-    "variance_band",
-    "variance_prior",
-    "applied",
-];
-
-/// Place of "on" in `COLUMNS`.
-const ON: usize = 2;
-/// Place of "z" in `COLUMNS`.
-const Z: usize = 6;
-/// Place of `plausible_sd` in `COLUMNS`.
-const PLAUSIBLE_SD: usize = 7;
-/// Place of "applied" in `COLUMNS`, the last column.
-const APPLIED: usize = 20;
-
 /// Returns the study's physics parameters: their diagnosis, applied changes and benefit; null if
-/// none are requested, and only the reason and the unused data if they are unavailable.
+/// none are requested, and only the reason and the data that are not used if they are unavailable.
 pub(super) fn physics(analysis: &Analysis) -> Value {
     let applied = match &analysis.physics {
         None => return Value::Null,
         Some(Err(failure)) => {
             let mut physics = json!({"code": failure.code(), "why": failure.to_string()});
             if let Some(left_out) = failure.left_out() {
-                add_left_out(&mut physics, left_out);
+                add_not_used(&mut physics, left_out);
             }
             return physics;
         }
@@ -128,7 +90,7 @@ fn not_moved(applied: &AppliedPhysics) -> Value {
 
 fn findings_json(findings: &PhysicsFindings, dataset: &Dataset) -> Value {
     let diagnosis = &findings.diagnosis;
-    let name = |index: usize| findings.parameters[index].name.as_str();
+    let name_of = |index: usize| findings.parameters[index].name.as_str();
     let mut parameters: Vec<Value> = findings.diagnosed().map(parameter_json).collect();
     for parameter in &findings.off {
         parameters.push(json!({
@@ -141,7 +103,7 @@ fn findings_json(findings: &PhysicsFindings, dataset: &Dataset) -> Value {
     let mut pairs = Vec::new();
     for pair in &diagnosis.pairs {
         let [a, b] = pair.parameters;
-        pairs.push(json!({"a": name(a), "b": name(b), "correlation": pair.correlation}));
+        pairs.push(json!({"a": name_of(a), "b": name_of(b), "correlation": pair.correlation}));
     }
     let mut without_condition = Vec::new();
     for condition in &diagnosis.conditions {
@@ -153,7 +115,7 @@ fn findings_json(findings: &PhysicsFindings, dataset: &Dataset) -> Value {
     }
     let mut stepwise = Vec::new();
     for step in diagnosis.scores.iter().flat_map(|scores| &scores.stepwise) {
-        stepwise.push(json!({"added": step.added.map(name), "ratio": step.score.ratio}));
+        stepwise.push(json!({"added": step.added.map(name_of), "ratio": step.score.ratio}));
     }
     let mut physics = json!({
         "verdict": diagnosis.verdict.map(|verdict| verdict.code()),
@@ -161,7 +123,7 @@ fn findings_json(findings: &PhysicsFindings, dataset: &Dataset) -> Value {
         "misfit": diagnosis.fit.misfit,
         "spread": diagnosis.spread,
         "passes": diagnosis.fit.passes.len(),
-        "still_moving": diagnosis.fit.still_moving.map(name),
+        "still_moving": diagnosis.fit.still_moving.map(name_of),
         "parameters": parameters,
         "stepwise": stepwise,
         "pairs": pairs,
@@ -170,29 +132,29 @@ fn findings_json(findings: &PhysicsFindings, dataset: &Dataset) -> Value {
         "words": verdict_text(findings),
         "cautions": diagnosis_cautions(findings),
     });
-    add_left_out(&mut physics, &findings.left_out);
+    add_not_used(&mut physics, &findings.left_out);
     without_empty(physics, &["still_moving", "pairs", "cautions", "not_used"])
 }
 
 /// Adds the runs and conditions that take no part in the fit.
-fn add_left_out(physics: &mut Value, left_out: &LeftOutData) {
-    let words = left_out_lines(left_out);
-    let mut codes = Vec::new();
+fn add_not_used(physics: &mut Value, left_out: &LeftOutData) {
+    // In the order of `left_out_lines`: the conditions, then the runs.
+    let mut not_used = Vec::new();
     for omitted in &left_out.conditions {
-        codes.push(json!({"condition": omitted.condition.0, "code": omitted.why.code()}));
+        not_used.push(json!({"condition": omitted.condition.0, "code": omitted.why.code()}));
     }
     for refused in &left_out.runs {
-        codes.push(json!({
+        not_used.push(json!({
             "condition": refused.condition.0,
             "run": refused.run.model,
             "parameter": refused.run.parameter,
             "code": refused.run.reason.code(),
         }));
     }
-    for (entry, words) in codes.iter_mut().zip(words) {
-        entry["why"] = json!(words);
+    for (entry, line) in not_used.iter_mut().zip(left_out_lines(left_out)) {
+        entry["why"] = json!(line);
     }
-    physics["not_used"] = Value::Array(codes);
+    physics["not_used"] = Value::Array(not_used);
 }
 
 fn parameter_json(found: DiagnosedParameter<'_>) -> Value {
@@ -249,6 +211,8 @@ fn add_assessment(physics: &mut Value, assessment: &PhysicsAssessment) {
     }
 }
 
+/// Returns a rerun with J of two models against it: of the prediction, and of its base, which has
+/// all parameters at their nominal values; or only the reason why it is not compared.
 fn rerun_json(check: &RerunCheck) -> Value {
     let mut rerun = json!({
         "condition": check.condition.0,
@@ -265,107 +229,4 @@ fn rerun_json(check: &RerunCheck) -> Value {
         Err(refusal) => rerun["code"] = json!(refusal.code()),
     }
     rerun
-}
-
-/// Writes `physics.csv`: a row for each parameter, with its diagnosis and the applied change; a
-/// parameter that is off has neither, and one set by hand without a fit has no diagnosis. Writes
-/// only the headings if no parameters are applied.
-pub(crate) fn write_physics_csv(
-    applied: Option<&AppliedPhysics>,
-    file: &mut dyn Write,
-) -> io::Result<()> {
-    let mut records = vec![COLUMNS.map(str::to_owned).to_vec()];
-    if let Some(applied) = applied {
-        records.extend(parameter_records(applied));
-    }
-    write_records(file, records.into_iter())
-}
-
-/// Returns the rows of `physics.csv`: the diagnosed parameters, those that are switched off, and
-/// those that are only set by hand.
-fn parameter_records(applied: &AppliedPhysics) -> Vec<Vec<String>> {
-    let mut records = Vec::new();
-    let mut listed: BTreeSet<&str> = BTreeSet::new();
-    if let Some(findings) = &applied.findings {
-        for found in findings.diagnosed() {
-            let name = found.parameter.name.as_str();
-            listed.insert(name);
-            let value = applied
-                .values
-                .iter()
-                .find(|value| value.parameter.name == name);
-            let mut cells = diagnosed_cells(found);
-            cells.push(full_precision(value.map(AppliedValue::change)));
-            records.push(cells);
-        }
-        for parameter in &findings.off {
-            listed.insert(&parameter.name);
-            let mut cells = empty_cells(parameter);
-            cells[ON] = "no".to_owned();
-            records.push(cells);
-        }
-    }
-    for value in &applied.values {
-        if listed.contains(value.parameter.name.as_str()) {
-            continue;
-        }
-        let mut cells = empty_cells(&value.parameter);
-        cells[ON] = "yes".to_owned();
-        cells[Z] = full_precision(Some(value.z));
-        cells[APPLIED] = full_precision(Some(value.change()));
-        records.push(cells);
-    }
-    records
-}
-
-/// Returns the cells for a parameter without a diagnosis.
-fn empty_cells(parameter: &OfferedParameter) -> Vec<String> {
-    let mut cells = vec![String::new(); COLUMNS.len()];
-    cells[0] = parameter.name.clone();
-    cells[1] = parameter.unit.clone();
-    cells[PLAUSIBLE_SD] = full_precision(Some(parameter.plausible_sd));
-    cells
-}
-
-/// Returns all cells for a diagnosed parameter except the last, the applied change.
-fn diagnosed_cells(found: DiagnosedParameter<'_>) -> Vec<String> {
-    let diagnosis = found.diagnosis;
-    let [lower, upper] = match found.interval() {
-        Some([lower, upper]) => [Some(lower), Some(upper)],
-        None => [None, None],
-    };
-    let variance = diagnosis.variance;
-    vec![
-        found.parameter.name.clone(),
-        found.parameter.unit.clone(),
-        "yes".to_owned(),
-        full_precision(Some(found.change())),
-        full_precision(lower),
-        full_precision(upper),
-        full_precision(Some(diagnosis.z)),
-        full_precision(Some(found.parameter.plausible_sd)),
-        yes_no(diagnosis.is_named()),
-        match diagnosis.why_not_named {
-            Some(why) => why.code().to_owned(),
-            None => String::new(),
-        },
-        full_precision(diagnosis.ratio_alone),
-        match diagnosis.step {
-            Some(step) => step.to_string(),
-            None => String::new(),
-        },
-        full_precision(diagnosis.gain),
-        full_precision(diagnosis.learned),
-        full_precision(diagnosis.channels_can_take),
-        full_precision(variance.and_then(|variance| variance.condition)),
-        full_precision(variance.and_then(|variance| variance.output)),
-        full_precision(variance.and_then(|variance| variance.input)),
-        full_precision(variance.and_then(|variance| variance.band)),
-        full_precision(variance.map(|variance| variance.prior)),
-    ]
-}
-
-fn yes_no(is_true: bool) -> String {
-    let word = if is_true { "yes" } else { "no" };
-    word.to_owned()
 }

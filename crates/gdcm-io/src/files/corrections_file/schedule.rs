@@ -14,11 +14,11 @@ use crate::json_empty_members::without_empty;
 
 /// Returns the object with the scheduled gains and delays (with leads, signed delays) over
 /// airspeed.
-pub(super) fn schedule_json(names: &LabelledAnalysis<'_>, schedule: &Schedule) -> Value {
+pub(super) fn schedule_json(labelled: &LabelledAnalysis<'_>, schedule: &Schedule) -> Value {
     let airspeeds = &schedule.airspeeds;
-    let gains = names.coefficients(&schedule.gains);
+    let gains = labelled.coefficients(&schedule.gains);
     let second_variable = schedule.second.as_ref().map(|term| {
-        let slopes = names.by_channel(|channel| term.slopes[channel]);
+        let slopes = labelled.by_channel(|channel| term.slopes[channel]);
         json!({
             "variable": term.variable.name(),
             "unit": term.variable.unit(),
@@ -29,12 +29,12 @@ pub(super) fn schedule_json(names: &LabelledAnalysis<'_>, schedule: &Schedule) -
         })
     });
     let delays_s = schedule.delays.as_ref().map(|delays| {
-        let mut coefficients = names.coefficients(&delays.taus_s);
+        let mut coefficients = labelled.coefficients(&delays.taus_s);
         coefficients["upper_s"] = delays.upper_s.parameters().into();
         coefficients
     });
     let tau_s = schedule.leads.as_ref().map(|leads| {
-        let mut coefficients = names.coefficients(&leads.taus_s);
+        let mut coefficients = labelled.coefficients(&leads.taus_s);
         coefficients["bounds_s"] = json!(leads.bounds_s);
         coefficients
     });
@@ -43,10 +43,10 @@ pub(super) fn schedule_json(names: &LabelledAnalysis<'_>, schedule: &Schedule) -
     for caution in &schedule.cautions {
         cautions.push(schedule_caution_text(
             caution,
-            &names.inputs,
-            &names.outputs,
+            &labelled.inputs,
+            &labelled.outputs,
         ));
-        caution_notes.push(schedule_caution(names, caution));
+        caution_notes.push(schedule_caution(labelled, caution));
     }
     let members = json!({
         "kind": match schedule.settings.kind {
@@ -67,7 +67,7 @@ pub(super) fn schedule_json(names: &LabelledAnalysis<'_>, schedule: &Schedule) -
         "second_variable": second_variable,
         "delays_s": delays_s,
         "tau_s": tau_s,
-        "table": schedule_table(names, schedule),
+        "table": schedule_table(labelled, schedule),
         "cautions": cautions,
         "caution_notes": caution_notes,
     });
@@ -75,21 +75,21 @@ pub(super) fn schedule_json(names: &LabelledAnalysis<'_>, schedule: &Schedule) -
 }
 
 /// Returns the correction at each distinct scheduled airspeed.
-fn schedule_table(names: &LabelledAnalysis<'_>, schedule: &Schedule) -> Value {
+fn schedule_table(labelled: &LabelledAnalysis<'_>, schedule: &Schedule) -> Value {
     let mut rows = Vec::new();
     for airspeed_kt in schedule.airspeeds.clusters_kt() {
         let correction = schedule.at(airspeed_kt);
-        let gains = names.gains(&correction);
+        let gains = labelled.gains(&correction);
         let delays_s = schedule
             .delays
             .as_ref()
-            .map(|_| names.delays_s(&correction));
+            .map(|_| labelled.delays_s(&correction));
         let row = json!({
             "airspeed_kt": airspeed_kt,
             "inputs": gains["inputs"],
             "outputs": gains["outputs"],
             "delays_s": delays_s,
-            "lead": names.leads(&correction),
+            "lead": labelled.leads(&correction),
         });
         rows.push(without_empty(row, &["delays_s", "lead"]));
     }
@@ -98,8 +98,8 @@ fn schedule_table(names: &LabelledAnalysis<'_>, schedule: &Schedule) -> Value {
 
 /// Returns a caution about the schedule: its code and text; if it concerns a single condition, also
 /// the condition and the values.
-fn schedule_caution(names: &LabelledAnalysis<'_>, caution: &ScheduleCaution) -> Value {
-    let text = schedule_caution_text(caution, &names.inputs, &names.outputs);
+fn schedule_caution(labelled: &LabelledAnalysis<'_>, caution: &ScheduleCaution) -> Value {
+    let text = schedule_caution_text(caution, &labelled.inputs, &labelled.outputs);
     match caution {
         ScheduleCaution::CostsMore(cost) => json!({
             "code": caution.code(),
@@ -118,7 +118,7 @@ fn schedule_caution(names: &LabelledAnalysis<'_>, caution: &ScheduleCaution) -> 
         } => json!({
             "code": caution.code(),
             "condition": condition.0,
-            "channel": channel.name(&names.inputs, &names.outputs),
+            "channel": channel.name(&labelled.inputs, &labelled.outputs),
             "value": tau_s,
             "elsewhere": elsewhere_s,
             "unit": "s",

@@ -1,12 +1,12 @@
 //! The part of `corrections.json` about the gain fit and the delay fit: objective, optimality
 //! proof, and the unmatched responses with an explanation.
 //!
-//! A constrained response is *unmatched* if its G or D (`wanted`) is infeasible; it is then
-//! constrained to a feasible `target`. A *conflict* is a minimal infeasible set of constrained
-//! responses and bounds; a *loop* of responses *agrees* if it deviates from consistency by no
-//! more than the tolerance. A *remedy* is a single change that makes all constraints feasible,
-//! and a *sensitivity* is the change in the objective if a constrained value or a bound is
-//! raised.
+//! A constrained response is *unmatched* if its G or D (`delta`; in the file, `wanted`) is
+//! infeasible; it is then constrained to a feasible product of gains or sum of delays, its
+//! `target`. A *conflict* is a minimal infeasible set of constrained responses and bounds; a *loop*
+//! of responses *agrees* if it deviates from consistency by no more than the tolerance. A *remedy*
+//! is a single change that makes all constraints feasible, and a *sensitivity* is the change in the
+//! objective if a constrained value or a bound is raised.
 
 use serde_json::{Value, json};
 
@@ -21,17 +21,18 @@ use gdcm_words::conflict_text::{agreement_text, conflict_text, miss_text};
 use super::labelled_analysis::LabelledAnalysis;
 use crate::json_empty_members::without_empty;
 
-pub(super) fn gain_solution(names: &LabelledAnalysis<'_>, result: &ConditionAnalysis) -> Value {
+pub(super) fn gain_solution(labelled: &LabelledAnalysis<'_>, result: &ConditionAnalysis) -> Value {
     let gains = &result.gains;
     let mut unmatched = Vec::new();
-    for entry in &gains.unmatched {
-        let figures = json!({
-            "target": entry.target,
-            "wanted": entry.delta,
-            "short_db": entry.excess,
-            "why": conflict_text(&entry.why, &names.inputs, &names.outputs),
+    for response in &gains.unmatched {
+        let members = json!({
+            "target": response.target,
+            "wanted": response.delta,
+            // 20 log10 (target / delta), negative if the correction is too weak.
+            "short_db": response.excess,
+            "why": conflict_text(&response.why, &labelled.inputs, &labelled.outputs),
         });
-        unmatched.push(names.response_entries(entry.pair, figures));
+        unmatched.push(labelled.response_entries(response.pair, members));
     }
     json!({
         "objective": gains.objective,
@@ -41,30 +42,35 @@ pub(super) fn gain_solution(names: &LabelledAnalysis<'_>, result: &ConditionAnal
         "local_minima": gains.proof.local_minima.len(),
         "matched": gains.matched,
         "unmatched": unmatched,
-        "explanation": explanation(names, &result.gain_problem, gains),
+        "explanation": explanation(labelled, &result.gain_problem, gains),
     })
 }
 
-pub(super) fn delay_solution(names: &LabelledAnalysis<'_>, result: &ConditionAnalysis) -> Value {
+pub(super) fn delay_solution(labelled: &LabelledAnalysis<'_>, result: &ConditionAnalysis) -> Value {
     let delays = &result.delays;
-    let band_top_rad_s = names.analysis.study.settings.band.max();
+    let band_top_rad_s = labelled.analysis.study.settings.band.max();
     let mut unmatched = Vec::new();
-    for entry in &delays.unmatched {
-        let mut why = miss_text(entry, band_top_rad_s, &names.inputs, &names.outputs);
+    for response in &delays.unmatched {
+        let mut why = miss_text(
+            response,
+            band_top_rad_s,
+            &labelled.inputs,
+            &labelled.outputs,
+        );
         // If a single response would need a lead (`is_lone_lead`), `why` already states this.
-        if !entry.why.is_lone_lead() {
+        if !response.why.is_lone_lead() {
             why = format!(
                 "{why} {}",
-                conflict_text(&entry.why, &names.inputs, &names.outputs)
+                conflict_text(&response.why, &labelled.inputs, &labelled.outputs)
             );
         }
-        let figures = json!({
-            "target_s": entry.target,
-            "wanted_s": entry.delta,
-            "phase_left_deg": entry.phase_left_deg(band_top_rad_s),
+        let members = json!({
+            "target_s": response.target,
+            "wanted_s": response.delta,
+            "phase_left_deg": response.phase_left_deg(band_top_rad_s),
             "why": why,
         });
-        unmatched.push(names.response_entries(entry.pair, figures));
+        unmatched.push(labelled.response_entries(response.pair, members));
     }
     // The slope of the objective along the directions that the constraints permit: zero proves the
     // minimum, because the problem is convex.
@@ -78,31 +84,31 @@ pub(super) fn delay_solution(names: &LabelledAnalysis<'_>, result: &ConditionAna
         "kkt_residual_s": kkt_residual_s,
         "matched": delays.matched,
         "unmatched": unmatched,
-        "explanation": explanation(names, &result.delay_problem, delays),
+        "explanation": explanation(labelled, &result.delay_problem, delays),
     });
     without_empty(solution, &["kkt_residual_s"])
 }
 
 /// Explains why gains or delays are not matched: the conflicts, loops that agree within the
 /// tolerance, the changes that would resolve the conflicts, and each constraint's cost.
-fn explanation(names: &LabelledAnalysis<'_>, problem: &Problem, solution: &Solution) -> Value {
+fn explanation(labelled: &LabelledAnalysis<'_>, problem: &Problem, solution: &Solution) -> Value {
     let mut conflicts = Vec::new();
     for conflict in &solution.conflicts {
-        let words = conflict_text(conflict, &names.inputs, &names.outputs);
-        conflicts.push(conflict_json(names, conflict, words));
+        let words = conflict_text(conflict, &labelled.inputs, &labelled.outputs);
+        conflicts.push(conflict_json(labelled, conflict, words));
     }
     let mut agreeing = Vec::new();
     for conflict in &solution.agreeing {
-        let words = agreement_text(conflict, &names.inputs, &names.outputs);
-        agreeing.push(conflict_json(names, conflict, words));
+        let words = agreement_text(conflict, &labelled.inputs, &labelled.outputs);
+        agreeing.push(conflict_json(labelled, conflict, words));
     }
     let remedy = solution.remedy.as_ref().map(|remedy| {
-        let free = names.pairs(remedy.free.iter().copied());
+        let free = labelled.pairs(remedy.free.iter().copied());
         json!({"upper": remedy.upper, "lower": remedy.lower, "free": free})
     });
     let mut constraints = Vec::new();
     for sensitivity in sensitivities(problem, solution) {
-        constraints.push(sensitivity_json(names, &sensitivity));
+        constraints.push(sensitivity_json(labelled, &sensitivity));
     }
     let explanation = json!({
         "conflicts": conflicts,
@@ -115,33 +121,37 @@ fn explanation(names: &LabelledAnalysis<'_>, problem: &Problem, solution: &Solut
 
 /// A conflict's kind, with the conflicting values: factors for gains, seconds for delays.
 #[derive(Default)]
-struct ConflictFigures {
+struct ConflictValues {
     kind: &'static str,
-    figure: Option<f64>,
+    /// Product or sum that the responses require, their ratio or difference, or a loop's mismatch
+    /// (for gains in dB).
+    required: Option<f64>,
+    /// Upper bound that would suffice.
     upper: Option<f64>,
+    /// Lower bound that would suffice.
     lower: Option<f64>,
 }
 
-impl ConflictFigures {
+impl ConflictValues {
     fn new(kind: ConflictKind) -> Self {
         match kind {
             ConflictKind::AboveUpper { asked, upper, .. } => Self {
                 kind: "upper_bound",
-                figure: Some(asked),
+                required: Some(asked),
                 upper: Some(upper),
                 ..Self::default()
             },
-            // The lower bound of delays is fixed, so that the entries need a lead of `-asked`.
+            // The lower bound of delays is fixed, so that the responses need a lead of `-asked`.
             ConflictKind::BelowLower {
                 asked, lower: None, ..
             } => Self {
                 kind: "lead",
-                figure: Some(-asked),
+                required: Some(-asked),
                 ..Self::default()
             },
             ConflictKind::BelowLower { asked, lower, .. } => Self {
                 kind: "lower_bound",
-                figure: Some(asked),
+                required: Some(asked),
                 lower,
                 ..Self::default()
             },
@@ -152,13 +162,13 @@ impl ConflictFigures {
                 ..
             } => Self {
                 kind: "both_bounds",
-                figure: Some(asked),
+                required: Some(asked),
                 upper: Some(upper),
                 lower,
             },
             ConflictKind::Loop { mismatch } => Self {
                 kind: "loop",
-                figure: Some(mismatch),
+                required: Some(mismatch),
                 ..Self::default()
             },
             ConflictKind::Unclear => Self {
@@ -169,38 +179,50 @@ impl ConflictFigures {
     }
 }
 
-fn conflict_json(names: &LabelledAnalysis<'_>, conflict: &Conflict, words: String) -> Value {
-    let ConflictFigures {
+fn conflict_json(labelled: &LabelledAnalysis<'_>, conflict: &Conflict, words: String) -> Value {
+    let ConflictValues {
         kind,
-        figure,
+        required,
         upper,
         lower,
-    } = ConflictFigures::new(conflict.kind);
+    } = ConflictValues::new(conflict.kind);
     let mut channels = Vec::new();
     for channel in conflict.channels() {
-        channels.push(channel.name(&names.inputs, &names.outputs));
+        channels.push(channel.name(&labelled.inputs, &labelled.outputs));
     }
     json!({
         "kind": kind,
-        "entries": names.pairs(conflict.entries.iter().copied()),
+        "entries": labelled.pairs(conflict.entries.iter().copied()),
         "channels": channels,
-        "figure": figure,
+        "figure": required,
         "upper": upper,
         "lower": lower,
         "words": words,
     })
 }
 
-fn sensitivity_json(names: &LabelledAnalysis<'_>, sensitivity: &Sensitivity) -> Value {
-    let (restraint, entry, channel) = match sensitivity.constraint {
-        ActiveConstraint::Held(pair) => ("held", Some(names.pair(pair)), None),
-        ActiveConstraint::LowerBound(channel) => ("lower_bound", None, Some(channel)),
-        ActiveConstraint::UpperBound(channel) => ("upper_bound", None, Some(channel)),
+/// Returns the constraint, which is a held response or a channel's bound, with the change in the
+/// objective per dB (gains) or ms (delays).
+fn sensitivity_json(labelled: &LabelledAnalysis<'_>, sensitivity: &Sensitivity) -> Value {
+    let restraint = match sensitivity.constraint {
+        ActiveConstraint::Held(_) => "held",
+        ActiveConstraint::LowerBound(_) => "lower_bound",
+        ActiveConstraint::UpperBound(_) => "upper_bound",
+    };
+    let held_pair = match sensitivity.constraint {
+        ActiveConstraint::Held(pair) => Some(labelled.pair(pair)),
+        ActiveConstraint::LowerBound(_) | ActiveConstraint::UpperBound(_) => None,
+    };
+    let bounded_channel = match sensitivity.constraint {
+        ActiveConstraint::Held(_) => None,
+        ActiveConstraint::LowerBound(channel) | ActiveConstraint::UpperBound(channel) => {
+            Some(channel.name(&labelled.inputs, &labelled.outputs))
+        }
     };
     json!({
         "restraint": restraint,
-        "entry": entry,
-        "channel": channel.map(|channel| channel.name(&names.inputs, &names.outputs)),
+        "entry": held_pair,
+        "channel": bounded_channel,
         "per_unit": sensitivity.per_unit,
         "share_per_unit": sensitivity.share_per_unit,
     })

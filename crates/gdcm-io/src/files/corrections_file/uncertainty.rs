@@ -4,7 +4,9 @@
 //! `u_physics` and `u_identification` are due to the unknown trim and to the identified models, and
 //! the inner interval has only the latter. `p_holm` is a probability after Holm's correction for
 //! several tests. *Scatter* is the variance of net gains between conditions, split into the part
-//! that the bars let expect and the rest; the *second variable* is altitude or mass.
+//! that the bars let expect and the rest; a *schedule band* lies about the schedule, over airspeed,
+//! whereas `left_in_band` and the band delay `D_band_s` refer to the frequency band. The *second
+//! variable* is altitude or mass.
 
 use serde_json::{Map, Value, json};
 
@@ -38,14 +40,14 @@ pub(super) fn net_gain_bar(
 
 /// Returns a condition's confidence intervals, except those for net gains; `None` if they were not
 /// computed.
-pub(super) fn bars(names: &LabelledAnalysis<'_>, condition: ConditionId) -> Option<Value> {
-    let uncertainty = names.analysis.uncertainty.as_ref()?;
+pub(super) fn bars(labelled: &LabelledAnalysis<'_>, condition: ConditionId) -> Option<Value> {
+    let uncertainty = labelled.analysis.uncertainty.as_ref()?;
     let bars = ConditionBars {
-        names,
+        labelled,
         bars: &uncertainty.conditions.get(&condition)?.bars,
         level: uncertainty.level,
     };
-    let band_delays = if names.analysis.condition(condition)?.asks_band_delays() {
+    let band_delays = if labelled.analysis.condition(condition)?.asks_band_delays() {
         bars.by_response(Scalar::BandDelay)
     } else {
         Value::Null
@@ -62,7 +64,7 @@ pub(super) fn bars(names: &LabelledAnalysis<'_>, condition: ConditionId) -> Opti
 
 /// A condition's error bars, from which its confidence intervals at a level are written.
 struct ConditionBars<'a> {
-    names: &'a LabelledAnalysis<'a>,
+    labelled: &'a LabelledAnalysis<'a>,
     bars: &'a ScalarTable<Option<Bar>>,
     level: f64,
 }
@@ -76,13 +78,14 @@ impl ConditionBars<'_> {
     }
 
     fn by_response(&self, scalar: fn(Pair) -> Scalar) -> Value {
-        let outputs = self.names.outputs.len();
-        let inputs = self.names.inputs.len();
+        let outputs = self.labelled.outputs.len();
+        let inputs = self.labelled.inputs.len();
         rows_of(outputs, inputs, |pair| self.bar(scalar(pair)))
     }
 
     fn by_channel(&self, scalar: fn(Channel) -> Scalar) -> Value {
-        self.names.by_channel(|channel| self.bar(scalar(channel)))
+        self.labelled
+            .by_channel(|channel| self.bar(scalar(channel)))
     }
 }
 
@@ -127,27 +130,27 @@ fn in_units(scalar: Scalar, ends: [f64; 2]) -> [f64; 2] {
 
 /// Returns the conclusions from all conditions' confidence intervals; `None` without confidence
 /// intervals.
-pub(super) fn uncertainty(names: &LabelledAnalysis<'_>) -> Option<Value> {
-    let uncertainty = names.analysis.uncertainty.as_ref()?;
+pub(super) fn uncertainty(labelled: &LabelledAnalysis<'_>) -> Option<Value> {
+    let uncertainty = labelled.analysis.uncertainty.as_ref()?;
     let level = uncertainty.level;
     let mut differences = Vec::new();
     for difference in &uncertainty.differences {
         let entries = difference_json(difference, level);
-        differences.push(names.response_entries(difference.pair, entries));
+        differences.push(labelled.response_entries(difference.pair, entries));
     }
     let mut scatters = Vec::new();
     for scatter in &uncertainty.scatter {
-        scatters.push(names.response_entries(scatter.pair, scatter_json(scatter, level)));
+        scatters.push(labelled.response_entries(scatter.pair, scatter_json(scatter, level)));
     }
     let mut second_variables = Vec::new();
     for test in &uncertainty.second_variables {
-        second_variables.push(names.response_entries(test.pair, second_variable_json(test)));
+        second_variables.push(labelled.response_entries(test.pair, second_variable_json(test)));
     }
     Some(json!({
         "level": level,
         "differences": differences,
         "scatter": scatters,
-        "schedule_band": bands(names, uncertainty),
+        "schedule_band": schedule_bands(labelled, uncertainty),
         "second_variable": second_variables,
     }))
 }
@@ -192,23 +195,24 @@ fn decomposition_json(split: &VarianceDecomposition, level: f64) -> Value {
 }
 
 /// Returns scheduled net gains for the on-axis responses (all responses if none is on-axis), with
-/// their confidence and scatter bands, as natural logarithms.
-fn bands(names: &LabelledAnalysis<'_>, uncertainty: &Uncertainty) -> Value {
-    let (Ok(schedule), Some(bands)) = (&names.analysis.schedule, &uncertainty.bands) else {
+/// confidence and scatter bands about the schedule, as natural logarithms.
+fn schedule_bands(labelled: &LabelledAnalysis<'_>, uncertainty: &Uncertainty) -> Value {
+    let (Ok(schedule), Some(bands)) = (&labelled.analysis.schedule, &uncertainty.bands) else {
         return json!([]);
     };
-    let pairs = names.analysis.study.dataset.measuring_pairs();
+    let pairs = labelled.analysis.study.dataset.measuring_pairs();
     let mut list = Vec::new();
     for pair in pairs.marked() {
-        if let Some(band) = band_json(schedule, bands, pair) {
-            list.push(names.response_entries(pair, band));
+        if let Some(band) = schedule_band_json(schedule, bands, pair) {
+            list.push(labelled.response_entries(pair, band));
         }
     }
     Value::Array(list)
 }
 
-/// Returns a net gain's bands at the distinct scheduled airspeeds; `None` if any is missing.
-fn band_json(schedule: &Schedule, bands: &ScheduleBands, pair: Pair) -> Option<Value> {
+/// Returns a net gain's schedule bands, as half-widths, at the distinct scheduled airspeeds; `None`
+/// if any is missing.
+fn schedule_band_json(schedule: &Schedule, bands: &ScheduleBands, pair: Pair) -> Option<Value> {
     let airspeeds_kt = schedule.airspeeds.clusters_kt();
     let mut fit = Vec::new();
     let mut confidence = Vec::new();

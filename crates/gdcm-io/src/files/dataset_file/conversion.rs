@@ -7,7 +7,8 @@ use gdcm_model::dataset::location::Location;
 use gdcm_model::dataset::{BundleKind, Channel, Condition, ConditionId, Dataset, PhysicsParameter};
 
 use super::json_form::{
-    BandText, ChannelText, ConditionText, DatasetText, FORMAT, ModelText, ParameterText, RecordText,
+    ChannelText, ConditionText, DatasetText, FORMAT, FrequencyBandText, ModelText, ParameterText,
+    RecordText,
 };
 use crate::content_fault::{ContentError, ContentFault};
 use crate::file_caution::FileCaution;
@@ -84,7 +85,7 @@ impl DatasetText {
             inputs: inputs.collect(),
             outputs: outputs.collect(),
             on_axis: Some(Limited(on_axis)),
-            frequency_band: BandText {
+            frequency_band: FrequencyBandText {
                 min: dataset.band().min(),
                 max: dataset.band().max(),
                 unit: "rad/s".to_owned(),

@@ -1,9 +1,9 @@
 //! JSON objects in a dataset file.
 //!
 //! Types named `…Text` have the file's keys; `conversion` and `model_conversion` turn them into
-//! drafts, which are then checked. Lists have limits, beyond which reading ends. A *run* is a
-//! physics model with a single named parameter moved, a *rerun* one with several moved together
-//! (M18).
+//! drafts, which are then checked. Lists have limits (`MOST_…`), beyond which reading ends. A *run*
+//! is a physics model with a single named parameter moved, a *rerun* one with several moved
+//! together (M18).
 
 use std::collections::BTreeMap;
 
@@ -38,7 +38,7 @@ pub(super) struct DatasetText {
     pub(super) outputs: Vec<ChannelText>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) on_axis: Option<Limited<(String, String), MOST_PAIRS>>,
-    pub(super) frequency_band: BandText,
+    pub(super) frequency_band: FrequencyBandText,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) parameters: Option<Limited<ParameterText, MOST_PARAMETERS>>,
     #[serde(deserialize_with = "conditions")]
@@ -80,7 +80,7 @@ pub(super) struct ChannelText {
 }
 
 #[derive(Deserialize, Serialize)]
-pub(super) struct BandText {
+pub(super) struct FrequencyBandText {
     pub(super) min: f64,
     pub(super) max: f64,
     pub(super) unit: String,
@@ -222,8 +222,9 @@ pub(crate) struct ModelText {
     pub(crate) output_delays_s: Option<Limited<f64, MOST_CHANNELS>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) frequency_response: Option<ResponseText>,
+    /// Standard deviations of the response; only for identified models.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(crate) bands: Option<BandsText>,
+    pub(crate) bands: Option<DeviationsText>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) source: Option<SourceText>,
     /// Notes on how the model was read; only outside a dataset.
@@ -291,7 +292,7 @@ pub(crate) enum SideText {
 
 /// Standard deviations of a model's response, outputs x inputs x frequencies.
 #[derive(Deserialize, Serialize)]
-pub(crate) struct BandsText {
+pub(crate) struct DeviationsText {
     #[serde(deserialize_with = "list::<MOST_FREQUENCIES, _, _>")]
     pub(super) omega_rad_s: Vec<f64>,
     pub(super) sd_db: Nested<3>,

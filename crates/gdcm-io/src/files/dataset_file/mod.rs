@@ -148,7 +148,7 @@ pub(crate) fn dataset_from(
     budget: &ReadingBudget<'_>,
 ) -> Result<LoadedDataset, FileError> {
     let path = origin.message_path();
-    let error = |fault| FileError::content_of(&path, fault, source.text());
+    let error = |fault| FileError::content_with_line(&path, fault, source.text());
     // Cautions concern unknown keys, keys that have no meaning in their place, and unusual values.
     let (text, mut cautions) = FORMAT.decode::<DatasetText>(source.text(), &path, budget)?;
     let CautionedDraft {
@@ -180,7 +180,7 @@ pub fn dataset_faults(path: &Path) -> Result<Vec<FileError>, FileError> {
     let budget = ReadingBudget::default();
     let source = Source::read(path, &budget)?;
     let (text, _) = FORMAT.decode::<DatasetText>(source.text(), path, &budget)?;
-    let error = |fault| FileError::content_of(path, fault, source.text());
+    let error = |fault| FileError::content_with_line(path, fault, source.text());
     let CautionedDraft { draft, .. } = text.into_draft().map_err(error)?;
     let faults = draft.faults().into_iter();
     Ok(faults

@@ -2,7 +2,7 @@
 //!
 //! A *bundle* holds a condition's physics models, or its identified models. A physics model with
 //! moved parameters is no bundle member: in a *run*, a single parameter is moved, in a *rerun*,
-//! several together (M18).
+//! several together (M18). A *draft* is a model before its checks.
 
 use nalgebra::DMatrix;
 
@@ -17,7 +17,7 @@ use gdcm_model::dataset::state_space::Timing;
 use gdcm_model::dataset::{BundleKind, Model, MovedModel};
 
 use super::json_form::{
-    BandsText, ModelText, ParameterChangeText, ResponseText, SideText, SourceText,
+    DeviationsText, ModelText, ParameterChangeText, ResponseText, SideText, SourceText,
 };
 use crate::content_fault::{ContentError, ContentFault};
 use crate::json_reading::{Limited, Nested};
@@ -128,7 +128,7 @@ impl ModelText {
 
     pub(crate) fn into_draft(self, origin: Origin) -> ModelDraft {
         let bands = match origin {
-            Origin::Identified { .. } => self.bands.map(BandsText::into_draft),
+            Origin::Identified { .. } => self.bands.map(DeviationsText::into_draft),
             Origin::Nominal { .. } | Origin::Perturbed { .. } => None,
         };
         ModelDraft {
@@ -139,7 +139,7 @@ impl ModelText {
                 input_delays_s: self.input_delays_s.map(|list| list.0),
                 output_delays_s: self.output_delays_s.map(|list| list.0),
             },
-            matrices: [self.a, self.b, self.c, self.d].map(|array| array.map(matrix)),
+            matrices: [self.a, self.b, self.c, self.d].map(|array| array.map(dense_matrix)),
             response: self.frequency_response.map(ResponseText::into_draft),
             states: Limited::entries(self.states),
             source: self.source.map(SourceText::into_provenance),
@@ -207,7 +207,7 @@ impl ModelText {
             input_delays_s: input_delays_s.map(Limited),
             output_delays_s: output_delays_s.map(Limited),
             frequency_response: draft.response.map(ResponseText::from_draft),
-            bands: draft.bands.map(BandsText::from_draft),
+            bands: draft.bands.map(DeviationsText::from_draft),
             source: draft.source.map(SourceText::from_provenance),
             ..origin
         }
@@ -232,32 +232,32 @@ impl ParameterChangeText {
     }
 }
 
-fn matrix(array: Nested<2>) -> DMatrix<f64> {
+fn dense_matrix(array: Nested<2>) -> DMatrix<f64> {
     DMatrix::from_row_slice(array.shape[0], array.shape[1], &array.values)
 }
 
-fn array(Nested { shape, values }: Nested<3>) -> ResponseArray {
+fn response_array(Nested { shape, values }: Nested<3>) -> ResponseArray {
     ResponseArray { shape, values }
 }
 
-fn nested(ResponseArray { shape, values }: ResponseArray) -> Nested<3> {
+fn nested_lists(ResponseArray { shape, values }: ResponseArray) -> Nested<3> {
     Nested { shape, values }
 }
 
-impl BandsText {
+impl DeviationsText {
     fn into_draft(self) -> BandsDraft {
         BandsDraft {
             omega: self.omega_rad_s,
-            sd_db: array(self.sd_db),
-            sd_deg: array(self.sd_deg),
+            sd_db: response_array(self.sd_db),
+            sd_deg: response_array(self.sd_deg),
         }
     }
 
     fn from_draft(bands: BandsDraft) -> Self {
         Self {
             omega_rad_s: bands.omega,
-            sd_db: nested(bands.sd_db),
-            sd_deg: nested(bands.sd_deg),
+            sd_db: nested_lists(bands.sd_db),
+            sd_deg: nested_lists(bands.sd_deg),
         }
     }
 }
@@ -266,10 +266,10 @@ impl ResponseText {
     fn into_draft(self) -> ResponseDraft {
         ResponseDraft {
             omega: self.omega_rad_s,
-            re: array(self.re),
-            im: array(self.im),
-            coherence: self.coherence.map(array),
-            valid_bands: self.valid_band_rad_s.map(array),
+            re: response_array(self.re),
+            im: response_array(self.im),
+            coherence: self.coherence.map(response_array),
+            valid_bands: self.valid_band_rad_s.map(response_array),
             estimate: Estimate {
                 averages: self.averages,
                 window_s: self.window_s,
@@ -281,10 +281,10 @@ impl ResponseText {
         let Estimate { averages, window_s } = response.estimate;
         Self {
             omega_rad_s: response.omega,
-            re: nested(response.re),
-            im: nested(response.im),
-            coherence: response.coherence.map(nested),
-            valid_band_rad_s: response.valid_bands.map(nested),
+            re: nested_lists(response.re),
+            im: nested_lists(response.im),
+            coherence: response.coherence.map(nested_lists),
+            valid_band_rad_s: response.valid_bands.map(nested_lists),
             averages,
             window_s,
         }

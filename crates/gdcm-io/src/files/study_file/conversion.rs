@@ -3,7 +3,7 @@
 //!
 //! *Decisions* are the settings, and for each condition the rejected models, the representatives,
 //! and whether it is scheduled or held out. A *variant* is a named alternative to them; *adopted*
-//! models are identified models that replace the dataset's in a condition.
+//! (in some names, *taken*) models are identified models that replace the dataset's in a condition.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -36,12 +36,16 @@ impl StudyText {
                 });
             }
         }
-        let mut taken = Vec::new();
-        for (condition, adopted) in study.taken_models() {
-            taken.push(AdoptedText {
+        let mut adopted = Vec::new();
+        for (condition, in_condition) in study.taken_models() {
+            adopted.push(AdoptedText {
                 condition: condition.0,
-                identified_models: adopted.models.iter().map(ModelText::of_model).collect(),
-                records: adopted
+                identified_models: in_condition
+                    .models
+                    .iter()
+                    .map(ModelText::of_model)
+                    .collect(),
+                records: in_condition
                     .records
                     .iter()
                     .map(RecordText::from_record)
@@ -55,7 +59,7 @@ impl StudyText {
             dataset,
             settings: study.settings.named(&study.dataset),
             conditions: ConditionText::from_study(study),
-            taken,
+            adopted,
             signs: study.turned_channels(),
             requirements: study.requirements.as_ref().clone(),
             export: ExportText::from_choices(&study.exports),
@@ -137,15 +141,15 @@ impl ConditionText {
 
 /// Converts a study file's content to decisions, checked against the dataset.
 pub(super) fn decisions_of(text: StudyText, dataset: &Dataset) -> Result<Decisions, ContentError> {
-    let mut decisions = present_decisions(text.settings, text.conditions, dataset)?;
-    decisions.taken = adopted_models(text.taken, dataset)?;
+    let mut decisions = settings_and_choices(text.settings, text.conditions, dataset)?;
+    decisions.taken = adopted_models(text.adopted, dataset)?;
     for variant in text.variants {
         let VariantText {
             name,
             settings,
             conditions,
         } = variant;
-        match present_decisions(settings, conditions, dataset) {
+        match settings_and_choices(settings, conditions, dataset) {
             Ok(variant) => decisions.variants.push((name, variant)),
             Err(mut error) => {
                 error.place.entry = format!("variant \"{name}\", {}", error.place.entry);
@@ -161,12 +165,12 @@ pub(super) fn decisions_of(text: StudyText, dataset: &Dataset) -> Result<Decisio
     Ok(decisions)
 }
 
-/// Returns the decisions in the settings and conditions, for a study or for one of its variants;
-/// adopted models, signs, requirements and exports have default values.
+/// Returns the decisions in the settings and the choices for each condition, for a study or for one
+/// of its variants; adopted models, signs, requirements and exports have default values.
 ///
 /// # Errors
 /// [`ContentError`] for a setting outside its range, or a condition that appears twice.
-fn present_decisions(
+fn settings_and_choices(
     mut settings: Settings<ResponseNames>,
     conditions: Vec<ConditionText>,
     dataset: &Dataset,

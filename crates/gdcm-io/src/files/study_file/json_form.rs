@@ -41,12 +41,13 @@ pub(super) struct StudyText {
     pub(super) conditions: Vec<ConditionText>,
     /// Identified models that replace the dataset's.
     #[serde(
+        rename = "taken",
         default,
         skip_serializing_if = "Vec::is_empty",
         deserialize_with = "list::<MOST_CONDITIONS, _, _>"
     )]
-    pub(super) taken: Vec<AdoptedText>,
-    /// Channels whose sign is reversed in some models.
+    pub(super) adopted: Vec<AdoptedText>,
+    /// Channels whose sign is reversed (*turned*) in some models.
     #[serde(
         default,
         skip_serializing_if = "Vec::is_empty",
@@ -79,6 +80,7 @@ pub(super) struct AdoptedText {
     pub(super) records: Vec<RecordText>,
 }
 
+/// Choices for the last export.
 #[derive(Deserialize, Serialize)]
 pub(super) struct ExportText {
     /// Format names; unknown names are ignored.
@@ -91,7 +93,9 @@ pub(super) struct ExportText {
         deserialize_with = "list::<MOST_CONDITIONS, _, _>"
     )]
     pub(super) conditions: Vec<ConditionId>,
+    /// Whether corrected models get their condition's own correction, not the schedule.
     pub(super) per_condition: bool,
+    /// Physics model for each condition: "nominal", "representative", or a model name.
     pub(super) model: String,
     /// Airspeeds \[kt\] for lookup tables; omitted if they are the conditions' airspeeds.
     #[serde(
@@ -106,6 +110,7 @@ pub(super) struct ExportText {
     pub(super) folder: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) prefix: Option<String>,
+    /// Whether existing files are replaced; otherwise the new files get a number.
     pub(super) replaces: bool,
 }
 
@@ -128,8 +133,8 @@ pub(super) struct DatasetReference {
     pub(super) name: String,
     pub(super) sha256: String,
     /// Summary of the dataset's contents, used to find changes; absent in older studies.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(super) holds: Option<Inventory>,
+    #[serde(rename = "holds", default, skip_serializing_if = "Option::is_none")]
+    pub(super) inventory: Option<Inventory>,
 }
 
 /// Decisions about a condition.

@@ -14,7 +14,7 @@ use gdcm_study::decisions::dataset_differences::{Difference, Inventory};
 
 use self::conversion::decisions_of;
 use self::json_form::{DatasetReference, FORMAT, StudyText};
-use self::paths::{path_text, referenced_path, settled_or_absolute, slashed};
+use self::paths::{path_text, referenced_path, resolved_or_absolute, with_slashes};
 use super::dataset_file::{DatasetOrigin, LoadedDataset, load_dataset_within, load_example};
 use super::example::Example;
 use crate::file_error::FileError;
@@ -88,13 +88,15 @@ pub(crate) fn study_from(
     let (text, unknown) = FORMAT.decode::<StudyText>(source.text(), path, budget)?;
     // Step 2.
     let mut loaded = load_referenced(&text.dataset, path, moved, budget)?;
-    let DatasetReference { sha256, holds, .. } = text.dataset.clone();
+    let DatasetReference {
+        sha256, inventory, ..
+    } = text.dataset.clone();
     // Step 3.
     let decisions =
         decisions_of(text, &loaded.dataset).map_err(|error| FileError::content(path, error))?;
     let (study, not_applied) = decisions.applied_to(loaded.dataset.clone());
     // Step 4.
-    let mut differences = match holds {
+    let mut differences = match inventory {
         _ if sha256 == loaded.sha256 => Vec::new(),
         Some(inventory) => inventory.differences(&loaded.dataset),
         None => vec![Difference::AnotherFile {
@@ -170,7 +172,7 @@ pub(crate) fn save_recovery(
     path: &Path,
 ) -> Result<(), FileError> {
     save(study, loaded, path, |dataset| {
-        slashed(&settled_or_absolute(dataset), path)
+        with_slashes(&resolved_or_absolute(dataset), path)
     })
 }
 
@@ -182,19 +184,19 @@ fn save(
     path_text: impl FnOnce(&Path) -> Result<String, FileError>,
 ) -> Result<(), FileError> {
     let sha256 = loaded.sha256.clone();
-    let holds = Some(Inventory::from_dataset(study.file_dataset()));
+    let inventory = Some(Inventory::from_dataset(study.file_dataset()));
     let reference = match &loaded.origin {
         DatasetOrigin::EmbeddedExample(example) => DatasetReference {
             path: None,
             name: example.name().to_owned(),
             sha256,
-            holds,
+            inventory,
         },
         DatasetOrigin::File(dataset) => DatasetReference {
             path: Some(path_text(dataset)?),
             name: study.dataset.name().to_owned(),
             sha256,
-            holds,
+            inventory,
         },
     };
     let text = StudyText::new(study, reference);

@@ -8,21 +8,21 @@ use crate::file_error::FileError;
 
 /// Returns the dataset's path as written in the study file `study`: relative if possible.
 pub(super) fn path_text(dataset: &Path, study: &Path) -> Result<String, FileError> {
-    let dataset = settled(dataset)?;
-    let directory = settled(study)?;
+    let dataset = resolved(dataset)?;
+    let resolved_study = resolved(study)?;
     // There is no relative path to another drive: use the absolute path.
-    let relative = directory
+    let relative = resolved_study
         .parent()
         .and_then(|directory| pathdiff::diff_paths(&dataset, directory))
         .unwrap_or(dataset);
-    slashed(&relative, study)
+    with_slashes(&relative, study)
 }
 
 /// Returns a path as text with `/` as the separator.
 ///
 /// # Errors
-/// [`FileError`] if the path is not valid Unicode.
-pub(super) fn slashed(path: &Path, study: &Path) -> Result<String, FileError> {
+/// [`FileError`] about the study file `study` if the path is not valid Unicode.
+pub(super) fn with_slashes(path: &Path, study: &Path) -> Result<String, FileError> {
     match path.to_str() {
         Some(text) => Ok(text.replace(std::path::MAIN_SEPARATOR, "/")),
         None => Err(FileError::unwritable(
@@ -34,7 +34,7 @@ pub(super) fn slashed(path: &Path, study: &Path) -> Result<String, FileError> {
 
 /// Returns a file's absolute path, with links in its directory resolved: `..` after an unresolved
 /// link would lead elsewhere.
-fn settled(path: &Path) -> Result<PathBuf, FileError> {
+fn resolved(path: &Path) -> Result<PathBuf, FileError> {
     let failed = |error: std::io::Error| FileError::writing(path, &error);
     let absolute = std::path::absolute(path).map_err(failed)?;
     match (absolute.parent(), absolute.file_name()) {
@@ -50,9 +50,9 @@ fn settled(path: &Path) -> Result<PathBuf, FileError> {
 
 /// Returns a dataset's absolute path with links in its directory resolved. If the directory is
 /// inaccessible, links stay unresolved, so that the decisions can still be saved.
-pub(super) fn settled_or_absolute(dataset: &Path) -> PathBuf {
-    if let Ok(settled) = settled(dataset) {
-        return settled;
+pub(super) fn resolved_or_absolute(dataset: &Path) -> PathBuf {
+    if let Ok(resolved) = resolved(dataset) {
+        return resolved;
     }
     std::path::absolute(dataset).unwrap_or(dataset.into())
 }

@@ -33,10 +33,12 @@ use crate::variable_fault::damage::Damage;
 use crate::variable_fault::unsupported_content::UnsupportedContent;
 
 /// Text with which the header of a flight begins.
-const MARK: &[u8] = b"H Product:Blackbox";
-/// Maximum time step between main frames \[µs\]; a longer step marks damaged data.
+const FLIGHT_MARK: &[u8] = b"H Product:Blackbox";
+/// Maximum time step between main frames \[µs\]; a longer step marks damaged data. A compromise: a
+/// smaller value would reject the data after a pause, a larger value would accept damaged times.
 const LONGEST_STEP_US: i64 = 10_000_000;
-/// Minimum number of main frames in a flight; shorter flights are omitted with a note.
+/// Minimum number of main frames in a flight; shorter flights are omitted with a note. A
+/// compromise: a larger number would omit short flights, a smaller number would keep fragments.
 const FEWEST_FRAMES: usize = 50;
 /// The number 1.0 in the header, as an IEEE 754 bit pattern.
 const ONE: &str = "0x3f800000";
@@ -47,7 +49,7 @@ const TERMS: [&str; 4] = ["axisP", "axisI", "axisD", "axisF"];
 pub(crate) const BLACKBOX: Importer = Importer {
     name: "a blackbox log",
     endings: &["bbl", "bfl"],
-    recognises: |bytes, _| bytes.starts_with(MARK),
+    recognises: |bytes, _| bytes.starts_with(FLIGHT_MARK),
     read: |bytes, path, budget| {
         read_blackbox(bytes, budget)
             .map(Contents::Logs)
@@ -106,9 +108,10 @@ fn read_blackbox(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Columns
 /// Returns the offsets \[bytes\] at which flights begin.
 fn flight_offsets(bytes: &[u8]) -> Vec<usize> {
     let mut offsets = Vec::new();
-    for at in 0..bytes.len().saturating_sub(MARK.len()) {
-        if bytes[at] == b'H' && bytes[at..].starts_with(MARK) {
-            offsets.push(at);
+    for offset in 0..bytes.len().saturating_sub(FLIGHT_MARK.len()) {
+        // The first letter is compared first, because most bytes differ from it.
+        if bytes[offset] == b'H' && bytes[offset..].starts_with(FLIGHT_MARK) {
+            offsets.push(offset);
         }
     }
     offsets
@@ -198,12 +201,13 @@ impl Flight {
     ) -> Result<(), VariableFault> {
         let field_count = self.values.len();
         let mut before = Predecessors::default();
-        let mut at = self.header.length;
-        while at < bytes.len() {
+        // Offset of the current frame's letter.
+        let mut offset = self.header.length;
+        while offset < bytes.len() {
             budget.work(field_count as u64, name)?;
             // Step 1
-            let mut packed = PackedBytes::new(bytes, at + 1);
-            let mut frame = parse_frame(&self.header, bytes[at], &mut packed, &before);
+            let mut packed = PackedBytes::new(bytes, offset + 1);
+            let mut frame = parse_frame(&self.header, bytes[offset], &mut packed, &before);
             // A frame is damaged if a byte other than a frame letter follows it; but a zero follows
             // the end of the log.
             let is_end = matches!(frame, Some(Frame::End));
@@ -219,25 +223,25 @@ impl Flight {
                     for (column, value) in self.values.iter_mut().zip(&values) {
                         column.push(*value as f64);
                     }
-                    let is_intra = bytes[at] == b'I';
+                    let is_intra = bytes[offset] == b'I';
                     before = Predecessors {
                         earlier: if is_intra { None } else { before.last },
                         last: Some(values),
                     };
-                    at = packed.at;
+                    offset = packed.at;
                 }
                 Some(Frame::Slow(values)) => {
                     self.add_mode_sample(&values, &before, name, budget)?;
-                    at = packed.at;
+                    offset = packed.at;
                 }
-                Some(Frame::Other) => at = packed.at,
+                Some(Frame::Other) => offset = packed.at,
                 Some(Frame::Main(_)) | None => {
                     // Count a damaged frame once, not at each byte up to the next intra frame.
                     if before.last.is_some() {
                         self.damaged += 1;
                     }
                     before = Predecessors::default();
-                    at += 1;
+                    offset += 1;
                 }
             }
         }

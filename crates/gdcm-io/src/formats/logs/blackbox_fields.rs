@@ -117,8 +117,8 @@ impl FrameFields {
         Some(values)
     }
 
-    /// Reads up to eight consecutive fields with the encoding `TAG8_8SVB`. They share a leading byte
-    /// in which each bit marks a nonzero field; a single field has no such byte.
+    /// Reads up to eight consecutive fields with the encoding `TAG8_8SVB`. They share a leading
+    /// byte in which each bit marks a nonzero field; a single field has no such byte.
     fn read_tag8_8svb(&self, bytes: &mut PackedBytes<'_>, values: &mut Vec<i64>) -> Option<()> {
         let mut count = 0;
         for number in self.encodings[values.len()..].iter().take(8) {

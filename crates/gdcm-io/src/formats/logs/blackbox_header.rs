@@ -33,7 +33,8 @@ impl Header {
             let fields = header.parse_fields(char::from(kind));
             header.fields_by_letter.insert(kind, fields);
         }
-        // For the main frames, the header gives names and signs under I only; P has the same fields.
+        // For the main frames, the header gives names and signs under I only; P has the same
+        // fields.
         let intra = header.fields_by_letter[&b'I'].clone();
         if let Some(predicted) = header.fields_by_letter.get_mut(&b'P') {
             predicted.names = intra.names;

@@ -23,6 +23,8 @@ use crate::variable_fault::damage::Damage;
 
 /// Messages with descriptions or parameters, which hold no samples.
 const DESCRIPTIONS: [&str; 5] = ["FMT", "FMTU", "UNIT", "MULT", "PARM"];
+/// Estimated memory for a topic, and for each of its fields, without samples \[bytes\].
+const FIELD_MEMORY: u64 = 128;
 /// Unit letter that marks the field with the sensor instance.
 const INSTANCE: char = '#';
 
@@ -132,7 +134,7 @@ impl Topics {
         let topic = match self.by_name.entry((name.clone(), instance)) {
             Entry::Occupied(known) => known.into_mut(),
             Entry::Vacant(place) => {
-                budget.take(fields.numbers.len() as u64 + 1, 128, name)?;
+                budget.take(fields.numbers.len() as u64 + 1, FIELD_MEMORY, name)?;
                 place.insert(new_topic(fields, instance))
             }
         };

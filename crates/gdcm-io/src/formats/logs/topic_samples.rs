@@ -7,7 +7,8 @@ use gdcm_sysid::records::record_table::TopicClock;
 
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Minimum number of samples in a topic; shorter topics are ignored.
+/// Minimum number of samples in a topic; shorter topics, such as single status messages, are
+/// ignored.
 const FEWEST_SAMPLES: usize = 3;
 
 /// Topic with the samples read so far.
@@ -53,8 +54,8 @@ impl TopicSamples {
         Ok(())
     }
 
-    /// Converts the fields to columns, which share a time axis; returns none if there are fewer than
-    /// `FEWEST_SAMPLES` samples.
+    /// Converts the fields to columns, which share a time axis; returns none if there are fewer
+    /// than `FEWEST_SAMPLES` samples.
     pub(super) fn into_columns(self) -> Vec<RecordColumn> {
         if self.time_s.len() < FEWEST_SAMPLES {
             return Vec::new();

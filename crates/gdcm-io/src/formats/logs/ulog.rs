@@ -45,6 +45,9 @@ const APPENDED_OFFSETS_AT: usize = 16;
 /// Number of offsets of appended data, which have 8 bytes each; unused offsets are 0.
 const APPENDED_OFFSETS: usize = 3;
 
+/// Estimated memory for a layout without its text, which stays in the file's bytes \[bytes\].
+const LAYOUT_MEMORY: u64 = 64;
+
 /// Importer for PX4 logs.
 pub(crate) const ULOG: Importer = Importer {
     name: "a PX4 ULog",
@@ -183,7 +186,7 @@ impl<'b> Messages<'b> {
     ) -> Result<(), VariableFault> {
         let text = std::str::from_utf8(content).unwrap_or_default();
         if let Some((name, fields)) = text.split_once(':') {
-            budget.take(1, 64, name)?;
+            budget.take(1, LAYOUT_MEMORY, name)?;
             self.layouts.entry(name).or_insert(fields);
         }
         Ok(())

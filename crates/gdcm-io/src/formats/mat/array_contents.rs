@@ -38,6 +38,9 @@ use crate::variable_fault::damage::Damage;
 use crate::variable_fault::unread::ObjectFault;
 use crate::variable_fault::unread::Unread;
 
+/// Estimated memory for a field name, which is kept twice while names are compared \[bytes\].
+const FIELD_NAME_MEMORY: u64 = 128;
+
 /// Reads arrays within a budget.
 ///
 /// In the methods, `contents` is the position in an array's data, and `path` leads to the value
@@ -333,7 +336,7 @@ pub(super) fn read_field_names(
         return Err(names.data.damaged(Damage::FieldNamesLength));
     }
     let length = length.max(1);
-    budget.take((bytes.len() / length) as u64, 128, "")?;
+    budget.take((bytes.len() / length) as u64, FIELD_NAME_MEMORY, "")?;
     let mut seen = HashSet::new();
     let mut found = Vec::new();
     for name in bytes.chunks_exact(length).map(decode_name) {

@@ -14,46 +14,45 @@ pub(super) fn read_text(
     shape: &[usize],
     budget: &ReadingBudget<'_>,
 ) -> Result<TextArray, VariableFault> {
-    let wanted = saturating_count(shape);
-    budget.take(wanted as u64, 16, "")?;
-    let mut codes = character_codes(element, wanted, budget)?;
+    let expected = saturating_count(shape);
+    budget.take(expected as u64, 16, "")?;
+    let mut codes = character_codes(element, expected, budget)?;
     if codes.is_empty() {
         // Files of old versions omit the characters of an array that holds only blanks.
-        codes = vec![u32::from(b' '); wanted];
+        codes = vec![u32::from(b' '); expected];
     }
-    if codes.len() != wanted {
+    if codes.len() != expected {
         let found = codes.len();
-        return Err(element.data.damaged(Damage::CharacterCount {
-            found,
-            expected: wanted,
-        }));
+        return Err(element
+            .data
+            .damaged(Damage::CharacterCount { found, expected }));
     }
     text_rows(&codes, shape, "", budget)
 }
 
-/// Reads an element's character codes; `wanted` is the character count in its shape.
+/// Reads an element's character codes; `expected` is the character count in its shape.
 fn character_codes(
     element: &Element<'_>,
-    wanted: usize,
+    expected: usize,
     budget: &ReadingBudget<'_>,
 ) -> Result<Vec<u32>, VariableFault> {
     if element.kind == DataKind::Utf8 {
-        return Ok(utf8_codes(element.data.rest(), wanted));
+        return Ok(utf8_codes(element.data.rest(), expected));
     }
     let found = element.count()?;
     let numbers = read_numbers(element, found, budget)?;
     Ok(numbers.into_iter().map(|number| number as u32).collect())
 }
 
-/// Decodes UTF-8 into character codes, depending on whether `wanted`, the character count in the
+/// Decodes UTF-8 into character codes, depending on whether `expected`, the character count in the
 /// shape, counts UTF-16 units (MATLAB), bytes (files that declare Latin-1 as UTF-8) or characters
 /// (some other programs).
-fn utf8_codes(bytes: &[u8], wanted: usize) -> Vec<u32> {
+fn utf8_codes(bytes: &[u8], expected: usize) -> Vec<u32> {
     let text = String::from_utf8_lossy(bytes);
     let units = text.encode_utf16().count();
-    if units == wanted {
+    if units == expected {
         text.encode_utf16().map(u32::from).collect()
-    } else if bytes.len() == wanted {
+    } else if bytes.len() == expected {
         bytes.iter().copied().map(u32::from).collect()
     } else {
         text.chars().map(u32::from).collect()

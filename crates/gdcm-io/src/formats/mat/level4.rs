@@ -162,21 +162,25 @@ impl MatrixHeader {
     /// if present, its imaginary part. The first two columns of the last row hold the dimensions.
     /// Returns `None` for any other number of columns, and for invalid dimensions or indices.
     fn sparse_entries(&self, stored: &[f64]) -> Option<SparseEntries> {
-        let columns: Vec<&[f64]> = stored.chunks_exact(self.rows.max(1)).collect();
-        let (rows, columns, re, im) = match *columns.as_slice() {
-            [rows, columns, re] => (rows, columns, re, None),
-            [rows, columns, re, im] => (rows, columns, re, Some(im)),
+        let stored_columns: Vec<&[f64]> = stored.chunks_exact(self.rows.max(1)).collect();
+        let [row_indices, column_indices, re, fourth @ ..] = stored_columns.as_slice() else {
+            return None;
+        };
+        let im = match fourth {
+            [] => None,
+            [im] => Some(im.to_vec()),
             _ => return None,
         };
-        let (&height, rows) = rows.split_last()?;
-        let (&width, columns) = columns.split_last()?;
+        let (&height, row_indices) = row_indices.split_last()?;
+        let (&width, column_indices) = column_indices.split_last()?;
         Some(SparseEntries {
             shape: [nonnegative(height)?, nonnegative(width)?],
             kind: self.number_type.kind(),
-            rows: indices_from_zero(rows)?,
-            columns: indices_from_zero(columns)?,
+            rows: indices_from_zero(row_indices)?,
+            columns: indices_from_zero(column_indices)?,
+            // The last row's numbers, beside the dimensions, belong to no element.
             re: re.to_vec(),
-            im: im.map(<[f64]>::to_vec),
+            im,
         })
     }
 }

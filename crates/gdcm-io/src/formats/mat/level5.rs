@@ -4,8 +4,8 @@
 //! 116 bytes  description as text
 //!   8 bytes  offset of the object part in the file; blank or zero without objects
 //!   2 bytes  version; its high byte is 1
-//!   2 bytes  "MI" as a 16-bit integer: the bytes "IM" in a little-endian file, "MI" in a big-endian
-//!            file
+//!   2 bytes  "MI" as a 16-bit integer: the bytes "IM" in a little-endian file, "MI" in a
+//!            big-endian file
 //! elements   an array for each variable, compressed or not; one without a name holds the objects
 //! ```
 //!

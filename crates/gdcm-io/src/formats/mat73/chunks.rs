@@ -12,7 +12,10 @@ use crate::variable_fault::unsupported_content::UnsupportedContent;
 
 /// Memory that the library needs for each chunk while it reads \[bytes\].
 const CHUNK: u64 = 128;
-/// Maximum stored chunk length beyond twice its decompressed length \[bytes\].
+/// Maximum ratio of a chunk's stored to its decompressed length: compression lengthens data that it
+/// cannot shorten, but only slightly.
+const MOST_STORED_PER_DECOMPRESSED: u64 = 2;
+/// Stored length permitted beyond this ratio \[bytes\], for the headers of short chunks.
 const OVERHEAD: u64 = 4096;
 
 /// Takes the memory needed to read a dataset in chunks from the budget: a decompressed chunk, and
@@ -59,7 +62,7 @@ pub(super) fn check_chunks(
     }
     let longest = elements_per_chunk
         .saturating_mul(size)
-        .saturating_mul(2)
+        .saturating_mul(MOST_STORED_PER_DECOMPRESSED)
         .saturating_add(OVERHEAD);
     let chunks = dataset
         .chunks()

@@ -5,13 +5,13 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use hdf5_pure::{FormatError, Source};
 
-/// Factor between file size and maximum number of bytes read: headers and indices are read again
-/// for each query.
-const TIMES: u64 = 16;
-/// Additional bytes that may be read from any file, whatever its size.
+/// Maximum number of times that a file's bytes are read on average: headers and indices are read
+/// again for each query.
+const MOST_PASSES: u64 = 16;
+/// Additional bytes that may be read from any file, so that a small file may be read more often.
 const ADDITIONAL: u64 = 16 << 20;
-/// Minimum number of bytes counted for each read.
-const LEAST: u64 = 16;
+/// Minimum number of bytes counted for each read, so that many short reads reach the limit, too.
+const LEAST_COUNTED: u64 = 16;
 
 /// File contents in memory, with a limit on the total number of bytes read.
 ///
@@ -20,7 +20,7 @@ const LEAST: u64 = 16;
 pub(super) struct LimitedSource {
     bytes: Vec<u8>,
     /// Number of bytes that may still be read.
-    left: AtomicU64,
+    remaining: AtomicU64,
     stop: Arc<AtomicBool>,
 }
 
@@ -28,11 +28,11 @@ impl LimitedSource {
     /// Creates a source; reading fails once `stop` is set.
     pub(super) fn new(bytes: Vec<u8>, stop: Arc<AtomicBool>) -> Self {
         let limit = (bytes.len() as u64)
-            .saturating_mul(TIMES)
+            .saturating_mul(MOST_PASSES)
             .saturating_add(ADDITIONAL);
         Self {
             bytes,
-            left: AtomicU64::new(limit),
+            remaining: AtomicU64::new(limit),
             stop,
         }
     }
@@ -44,16 +44,16 @@ impl Source for LimitedSource {
     }
 
     fn read_at(&self, offset: u64, buffer: &mut [u8]) -> Result<(), FormatError> {
-        let cost = (buffer.len() as u64).max(LEAST);
-        let paid = self
-            .left
-            .fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| {
-                left.checked_sub(cost)
-            });
+        let counted = (buffer.len() as u64).max(LEAST_COUNTED);
+        let update =
+            self.remaining
+                .fetch_update(Ordering::Relaxed, Ordering::Relaxed, |remaining| {
+                    remaining.checked_sub(counted)
+                });
         if self.stop.load(Ordering::Relaxed) {
             return Err(FormatError::Source("stopped".to_owned()));
         }
-        if paid.is_err() {
+        if update.is_err() {
             return Err(FormatError::Source(
                 "the parts of the file refer to one another too often".to_owned(),
             ));

@@ -18,6 +18,7 @@ pub(super) fn parse_literal(text: &str) -> Result<Json, Damage> {
         // Number of bytes converted in this step.
         let length = match sign {
             '\'' | '"' => convert_text(rest, sign, &mut json)?,
+            // The small letters begin the words of JSON (true, false, null), which are rejected.
             'T' | 'F' | 't' | 'f' | 'n' => convert_word(rest, &mut json)?,
             '(' | '[' => {
                 json.push('[');

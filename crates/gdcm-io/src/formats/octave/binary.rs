@@ -5,8 +5,8 @@
 //! value    name, documentation, 1 if global (1 byte), FF, type name, then parts that depend on the
 //!          type
 //! string   length [bytes] (32 bits), characters; also for each name
-//! matrix   minus the number of dimensions (32 bits), dimensions, numbers; or the numbers of rows and
-//!          columns, numbers
+//! matrix   minus the number of dimensions (32 bits), dimensions, numbers; or the numbers of rows
+//!          and columns, numbers
 //! floats   a byte with the storage type, then the numbers
 //! ```
 //!

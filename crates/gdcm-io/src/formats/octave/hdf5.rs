@@ -27,11 +27,14 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 use crate::variable_fault::damage::Damage;
 use crate::variable_fault::unread::Unread;
 
-/// Argument `in_cells` for the fields of a single record: each holds its value directly.
-const DIRECTLY: bool = false;
-/// Argument `in_cells` for a struct array or an object: each field is a cell array with a value per
-/// record.
-const IN_CELLS: bool = true;
+/// How a struct's fields hold their values.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum FieldValues {
+    /// In a single record, each field holds its value directly.
+    Direct,
+    /// In a struct array or an object, each field is a cell array with a value per record.
+    InCells,
+}
 
 /// Converts the groups in a file written by Octave to values; returns the values from any other
 /// file unchanged. A file is from Octave if all its variables are groups with a type and a value.
@@ -117,8 +120,8 @@ fn convert_group(
                 Form::Range => Value::Array(parts.range()?),
                 Form::Cell => Value::Cell(parts.cell()?),
                 Form::Sparse(_) => Value::Array(parts.sparse()?),
-                Form::ScalarStruct => Value::Struct(parts.records(DIRECTLY)?),
-                Form::StructArray => Value::Struct(parts.records(IN_CELLS)?),
+                Form::ScalarStruct => Value::Struct(parts.records(FieldValues::Direct)?),
+                Form::StructArray => Value::Struct(parts.records(FieldValues::InCells)?),
                 Form::Class => Value::Object(parts.object()?),
                 _ => unknown_value(type_name),
             }
@@ -236,20 +239,20 @@ impl<'v> GroupParts<'v> {
         };
         Ok(Object {
             class,
-            records: fields.records(IN_CELLS)?,
+            records: fields.records(FieldValues::InCells)?,
         })
     }
 
-    /// Converts the fields of a struct. With `in_cells`, a field may be a cell array with a value
-    /// for each record.
-    fn records(&self, in_cells: bool) -> Result<StructArray, VariableFault> {
+    /// Converts the fields of a struct; the records are those of the fields' cell arrays, or a
+    /// single one.
+    fn records(&self, field_values: FieldValues) -> Result<StructArray, VariableFault> {
         let mut records = StructArray::one(Vec::new());
         for (name, values) in &self.parts.fields {
             let inner = format!("{}.{name}", self.variable);
             let values = match values.first() {
                 None => Vec::new(),
                 Some(value) => match convert_group(value, &inner, self.budget)? {
-                    Value::Cell(cell) if in_cells => {
+                    Value::Cell(cell) if field_values == FieldValues::InCells => {
                         if !records.fields.is_empty() && records.shape != cell.shape {
                             return Err(damaged(&inner, Damage::FieldLength));
                         }

@@ -28,6 +28,10 @@ use crate::variable_fault::unread::Unread;
 /// Number of bytes at the beginning of a file in which the first variable must appear.
 const HEAD: usize = 2000;
 
+/// Memory for an entry of a sparse matrix, row, column and number \[bytes\]; the factor 2: vectors
+/// grow by doubling.
+const ENTRY_MEMORY: u64 = 2 * 3 * 8;
+
 /// Importer for files written by `save -text`.
 pub(crate) const OCTAVE_TEXT: Importer = Importer {
     name: "a GNU Octave file, written with -text",
@@ -313,8 +317,7 @@ impl Parts for TextReader<'_> {
             if row >= height || column >= width {
                 return Err(self.fault(variable, OctaveFault::ElementOutsideMatrix));
             }
-            // Take twice an entry's memory: vectors grow by doubling.
-            self.budget.take(1, 48, variable)?;
+            self.budget.take(1, ENTRY_MEMORY, variable)?;
             rows.push(row);
             columns.push(column);
             numbers.extend(self.read_numbers(element, 1, variable)?);

@@ -21,7 +21,8 @@ const MISSING: [&str; 14] = [
     ".",
 ];
 
-/// Maximum length \[bytes\] for a number in a notation that Rust does not parse.
+/// Maximum length \[bytes\] for a number in a notation that Rust does not parse; longer cells are
+/// text.
 const LONGEST: usize = 400;
 
 /// Parses the number in a cell: NaN for a missing number, `None` for anything that is not a number.

@@ -18,6 +18,7 @@ pub(super) fn clock_s(text: &str) -> Option<f64> {
     if parts.next().is_some() {
         return None;
     }
+    // Hour 24 occurs in 24:00, the end of a day.
     let hours = two_digits(hours, 24)?;
     let minutes = two_digits(minutes, 59)?;
     let seconds = match seconds {

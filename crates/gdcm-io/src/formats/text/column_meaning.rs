@@ -5,8 +5,8 @@
 //! 1. Separate a unit at the end of the name, such as "mag_dB", unless the unit is already known.
 //! 2. The names "w" and "f" denote the frequency, unless the unit is none that this module knows,
 //!    such as m/s.
-//! 3. Otherwise a word in the name gives the quantity, such as "phase" in "phase P/LAT"; what remains
-//!    of the name is the label of the response: its output P and its input LAT.
+//! 3. Otherwise a word in the name gives the quantity, such as "phase" in "phase P/LAT"; what
+//!    remains of the name is the label of the response: its output P and its input LAT.
 //! 4. Otherwise the unit, or a sign such as ∠, gives the quantity.
 //! 5. A missing unit may be implied by the word, such as rad/s by "omega" or "w".
 

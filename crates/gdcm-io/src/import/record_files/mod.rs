@@ -142,7 +142,7 @@ pub fn load_records(
             None => Err(FileError::NoRecord {
                 path: path.to_owned(),
                 record: variable.map(str::to_owned),
-                held: found.tables.len(),
+                record_count: found.tables.len(),
             }),
         });
     }

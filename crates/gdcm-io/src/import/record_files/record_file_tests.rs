@@ -224,7 +224,7 @@ fn records_are_found_again_by_their_names_in_the_dataset() {
     assert!(
         matches!(
             error,
-            FileError::NoRecord { record: Some(record), held: 2, .. } if record == "run 6"
+            FileError::NoRecord { record: Some(record), record_count: 2, .. } if record == "run 6"
         ),
         "{error:?}"
     );

@@ -428,7 +428,7 @@ fn requests_without_data_fail_with_a_code_and_keep_the_models() {
         let study = study_of(&dataset, physics);
         let analysis = analyze(&mut Engine::default(), &study);
         assert_eq!(
-            analysis.asked_physics().unwrap_err().code(),
+            analysis.requested_physics().unwrap_err().code(),
             "physics-without-runs"
         );
         let id = dataset.ids().next().unwrap();
@@ -443,7 +443,7 @@ fn requests_without_data_fail_with_a_code_and_keep_the_models() {
     }
     let analysis = analyze(&mut Engine::default(), &study);
     assert_eq!(
-        analysis.asked_physics().unwrap_err().code(),
+        analysis.requested_physics().unwrap_err().code(),
         "physics-all-off"
     );
 }

@@ -24,6 +24,8 @@ use crate::variable_fault::unread::ObjectFault;
 /// Property that holds the value that a class saves instead of an object; such an object has no
 /// defaults.
 const CREATED: &str = "any";
+/// Estimated memory for a property without the contents of its value \[bytes\].
+const PROPERTY_MEMORY: u64 = 256;
 /// All integers below this limit are exact as floats.
 const EXACT_BELOW: f64 = (1_u64 << 53) as f64;
 
@@ -248,7 +250,7 @@ impl<'s> Assembly<'s> {
         path: &ValuePath<'_>,
     ) -> Result<Value, VariableFault> {
         let subsystem = self.subsystem;
-        self.budget.take(1, 256, "")?;
+        self.budget.take(1, PROPERTY_MEMORY, "")?;
         match property.content {
             Content::Cell(cell) => match subsystem.values.get(cell) {
                 Some(value) => self.copy(value, path),

@@ -8,7 +8,7 @@ use flate2::bufread::GzDecoder;
 use gdcm_model::dataset::limits::LARGEST_TEXT;
 
 use crate::file_error::FileError;
-use crate::reading_budget::ReadingBudget;
+use crate::reading_budget::{NO_VARIABLE, ReadingBudget};
 
 /// First two bytes in every gzip file (RFC 1952, section 2.3.1).
 pub(super) const GZIP_MAGIC: [u8; 2] = [0x1f, 0x8b];
@@ -45,7 +45,7 @@ fn unpack_chunk(
 ) -> Result<usize, FileError> {
     // Two bytes for each: a vector that grows may have up to twice the necessary capacity.
     budget
-        .take(CHUNK as u64, 2, "")
+        .take(CHUNK as u64, 2, NO_VARIABLE)
         .map_err(|fault| FileError::variables(path, fault))?;
     let unpacked = member.take(CHUNK as u64).read_to_end(text);
     check_length(text.len() as u64, LARGEST_TEXT, path)?;

@@ -69,8 +69,8 @@ impl<'de, const DEPTH: usize> Deserialize<'de> for Nested<DEPTH> {
     }
 }
 
-/// Array under construction while its nested lists are read: serde calls [`ListReader::visit_seq`] for
-/// each list, from the outside in.
+/// Array under construction while its nested lists are read: serde calls [`ListReader::visit_seq`]
+/// for each list, from the outside in.
 struct ArrayBuilder<const DEPTH: usize> {
     /// List length at each depth; `None` until the first list at this depth has ended.
     lengths: [Option<usize>; DEPTH],

@@ -44,8 +44,8 @@ impl<T, const MOST: usize> Limited<T, MOST> {
     }
 }
 
-/// Reads a list with at most `most` entries; ends with an error at the first entry that `check`
-/// rejects.
+/// Reads a list with at most `most` entries, while `check` accepts each; ends with an error at the
+/// first entry that it rejects.
 pub(super) fn list_while<'de, T, D>(
     deserializer: D,
     most: usize,

@@ -11,7 +11,7 @@ use json_event_parser::{JsonEvent, SliceJsonParser};
 use gdcm_model::message_text::{quoted, sanitized, shortened};
 
 use crate::json_path::{CONDITIONS, Step};
-use crate::reading_budget::ReadingBudget;
+use crate::reading_budget::{NO_VARIABLE, ReadingBudget};
 
 /// Maximum number of labelled conditions and models, so that an outline takes no more memory than a
 /// dataset.
@@ -55,7 +55,7 @@ impl Outline {
     /// exhausted.
     pub(super) fn format_of(text: &[u8], budget: &ReadingBudget<'_>) -> Option<String> {
         let outline = Self::read_until(text, |outline| {
-            outline.format.is_some() || budget.work(0, "").is_err()
+            outline.format.is_some() || budget.work(0, NO_VARIABLE).is_err()
         });
         outline.format
     }
@@ -68,7 +68,7 @@ impl Outline {
     ) -> (Option<String>, Option<String>) {
         let outline = Self::read_until(text, |outline| {
             let is_complete = outline.format.is_some() && outline.version.is_some();
-            is_complete || budget.work(0, "").is_err()
+            is_complete || budget.work(0, NO_VARIABLE).is_err()
         });
         (outline.format, outline.version)
     }

@@ -12,7 +12,7 @@ use crate::file_error::FileError;
 use crate::json_location::location_of;
 use crate::json_outline::Outline;
 use crate::json_path::Step;
-use crate::reading_budget::ReadingBudget;
+use crate::reading_budget::{NO_VARIABLE, ReadingBudget};
 use crate::unknown_keys::UnknownKeys;
 
 pub(super) use crate::json_arrays::Nested;
@@ -54,7 +54,7 @@ impl Format {
         self.check(text, path, budget)?;
         // Step 2.
         budget
-            .take(text.len() as u64, MEMORY_PER_BYTE, "")
+            .take(text.len() as u64, MEMORY_PER_BYTE, NO_VARIABLE)
             .map_err(|fault| FileError::variables(path, fault))?;
         // Step 3.
         let mut unknown = UnknownKeys::default();

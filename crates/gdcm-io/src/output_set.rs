@@ -163,6 +163,7 @@ impl OutputSet {
             temporary,
         } in self.staged
         {
+            // Tests end the process here, as if it were killed.
             #[cfg(test)]
             tests::end_here(&path);
             match Placed::at(target, temporary, self.existing) {
@@ -224,6 +225,7 @@ struct Placed {
 }
 
 impl Placed {
+    /// Renames a temporary file to `target`; before, keeps aside an existing file that is replaced.
     fn at(target: PathBuf, temporary: NamedTempFile, existing: Existing) -> io::Result<Self> {
         if existing == Existing::Keep {
             temporary.persist_noclobber(&target)?;

@@ -6,6 +6,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 pub use crate::variable_fault::VariableFault;
 
+/// Argument `variable` of [`ReadingBudget`] and [`VariableFault`] if no variable is affected, or if
+/// the caller adds its name.
+pub(crate) const NO_VARIABLE: &str = "";
+
 /// Maximum memory for reading one file \[bytes\].
 pub(crate) const MOST_MEMORY: u64 = 1 << 30;
 
@@ -101,7 +105,7 @@ impl<'p> ReadingBudget<'p> {
 
     /// Checks for cancellation in a loop over elements that are already counted. To be called for
     /// each `element`; only one call in some thousands queries the flag.
-    pub fn go_on(&self, element: usize) -> Result<(), VariableFault> {
+    pub fn check_stop(&self, element: usize) -> Result<(), VariableFault> {
         /// Number of elements between two queries, read in less than 0.01 s.
         const BETWEEN: usize = 1 << 14;
         if element.is_multiple_of(BETWEEN) && self.stop.load(Ordering::Relaxed) {

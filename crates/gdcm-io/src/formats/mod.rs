@@ -42,7 +42,7 @@ use std::path::Path;
 use gdcm_model::assembly::FoundModel;
 use gdcm_model::dataset::Dataset;
 
-use self::variables::Variable;
+use self::variables::{PageIndex, Variable};
 use crate::file_caution::FileCaution;
 use crate::file_error::FileError;
 use crate::formats::foreign_formats::FOREIGN_FORMAT;
@@ -102,8 +102,8 @@ pub(crate) enum Contents {
         variables: Vec<Variable>,
         /// Remarks on interpretations that are not obvious.
         notes: Vec<ReadingNote>,
-        /// Whether, in arrays with three dimensions, the first index selects a matrix, as in NumPy.
-        pages_first: bool,
+        /// Index that selects a matrix in arrays with three dimensions.
+        page_index: PageIndex,
     },
     /// Text with lines of numbers; their meaning depends on whether models or records are sought.
     Text(String),
@@ -138,7 +138,7 @@ impl Contents {
         Ok(Self::Variables {
             variables,
             notes: Vec::new(),
-            pages_first: true,
+            page_index: PageIndex::First,
         })
     }
 
@@ -155,7 +155,7 @@ impl Contents {
         Ok(Self::Variables {
             variables,
             notes: Vec::new(),
-            pages_first: false,
+            page_index: PageIndex::Last,
         })
     }
 }

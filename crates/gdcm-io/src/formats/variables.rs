@@ -1,7 +1,8 @@
 //! Named variables from other programs' files.
 //!
 //! The readers of formats with named values (such as MATLAB, NumPy and JSON) return these; `import`
-//! determines what they mean for models and records.
+//! determines which of them are models or flight records. In this file, a *record* is an element of
+//! a struct array.
 
 use crate::variable_fault::unread::Unread;
 
@@ -55,6 +56,15 @@ impl Array {
     pub fn is_empty(&self) -> bool {
         self.re.is_empty()
     }
+}
+
+/// Index that selects a matrix, called *page*, in an array with three dimensions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum PageIndex {
+    /// `A[k,:,:]`, as in NumPy and JSON.
+    First,
+    /// `A(:,:,k)`, as in MATLAB.
+    Last,
 }
 
 /// Value with its name; readers name a value that has no name in the file.

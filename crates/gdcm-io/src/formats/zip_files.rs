@@ -13,7 +13,7 @@ use crate::file_error::FileError;
 use crate::formats::npy::read_npy;
 use crate::formats::variables::Variable;
 use crate::formats::{Contents, Importer, importer_of, is_known};
-use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::reading_budget::{NO_VARIABLE, ReadingBudget, VariableFault};
 use crate::variable_fault::damage::Damage;
 use crate::variable_fault::unsupported_content::UnsupportedContent;
 
@@ -75,7 +75,7 @@ impl ArchiveReading {
         // Each entry needs memory for a variable or a file, whereas a few bytes in the archive's
         // directory suffice to create it.
         let overhead = size_of::<Variable>() + size_of::<Contents>() + file.path.len();
-        budget.take(1, overhead as u64, "")?;
+        budget.take(1, overhead as u64, NO_VARIABLE)?;
         if let Some(name) = file.path.strip_suffix(ARRAY_ENDING) {
             return self.add_array(file, name, budget);
         }
@@ -149,7 +149,11 @@ fn visit_files(
     let mut entries = archive.entries();
     loop {
         let entry = entries.next_entry().map_err(|error| {
-            VariableFault::damaged("", library_damage(&error), archive.directory_offset())
+            VariableFault::damaged(
+                NO_VARIABLE,
+                library_damage(&error),
+                archive.directory_offset(),
+            )
         })?;
         let Some(entry) = entry else {
             return Ok(());
@@ -160,7 +164,7 @@ fn visit_files(
         let path = entry.file_path();
         let offset = entry.local_header_offset();
         let path = std::str::from_utf8(path.as_bytes())
-            .map_err(|_| VariableFault::damaged("", Damage::FileNameNotUtf8, offset))?;
+            .map_err(|_| VariableFault::damaged(NO_VARIABLE, Damage::FileNameNotUtf8, offset))?;
         visit(&ZipFile {
             path,
             offset,
@@ -180,20 +184,22 @@ impl ZipFile<'_, '_> {
                 UnsupportedContent::EncryptedEntry,
             ));
         }
-        let found = self
+        let stored = self
             .archive
             .get_entry(self.entry.wayfinder())
             .map_err(|error| self.damaged(name, library_damage(&error)))?;
-        let packed = found.data();
+        let packed = stored.data();
         let length = self.entry.uncompressed_size_hint();
         if length > (packed.len() as u64).saturating_mul(LARGEST_RATIO) {
             return Err(self.damaged(name, Damage::ArchiveExpansion));
         }
         budget.take(length, 1, name)?;
         let unpacked = match self.entry.compression_method() {
-            CompressionMethod::STORE => read_whole(found.verifying_reader(packed), length, budget)?,
+            CompressionMethod::STORE => {
+                read_whole(stored.verifying_reader(packed), length, budget)?
+            }
             CompressionMethod::DEFLATE => read_whole(
-                found.verifying_reader(DeflateDecoder::new(packed)),
+                stored.verifying_reader(DeflateDecoder::new(packed)),
                 length,
                 budget,
             )?,
@@ -236,7 +242,7 @@ fn read_whole(
     let mut unpacked = Vec::with_capacity(usize::try_from(length).unwrap_or(0));
     loop {
         // No work step, but an error if the reading is cancelled.
-        budget.work(0, "")?;
+        budget.work(0, NO_VARIABLE)?;
         match reader.by_ref().take(CHUNK).read_to_end(&mut unpacked) {
             Ok(0) if unpacked.len() as u64 == length => return Ok(Ok(unpacked)),
             Ok(0) => {
@@ -254,7 +260,7 @@ fn read_whole(
 /// with the directory is missing.
 fn unreadable(bytes: &[u8]) -> VariableFault {
     if bytes.starts_with(b"PK\x03\x04") {
-        return VariableFault::cut_off("", bytes.len());
+        return VariableFault::cut_off(NO_VARIABLE, bytes.len());
     }
     VariableFault::other_bytes("a zip archive (.npz, .zip)", bytes)
 }

@@ -1,7 +1,8 @@
 //! Models of a dataset file that is read as one of several model files.
 //!
-//! Physics models with moved parameters are the runs and reruns of M18, which belong to no bundle.
-//! A [`FoundModel`] is a model outside a dataset, with the [`Facts`] that its file states.
+//! A *bundle* is a condition's physics or identified models. Physics models with *moved*
+//! parameters, from which the effects of the parameters are determined (M18), are beside the
+//! bundles. A [`FoundModel`] is a model outside a dataset, with the [`Facts`] that its file states.
 
 use std::path::Path;
 
@@ -33,6 +34,7 @@ pub(super) fn models_of_dataset(dataset: &Dataset, name: &str) -> Vec<FoundModel
             for draft in drafts {
                 let original = draft.source.clone().unwrap_or_default();
                 let notes = original.note.clone().into_iter().collect();
+                // The reader of model files adds the dataset file, its hash and the notes.
                 let source = Provenance {
                     variable: Some(format!("{id}/{kind}/{}", draft.name)),
                     note: None,

@@ -13,7 +13,7 @@ use gdcm_model::dataset::model::Provenance;
 use super::recognise::recognition_fault::{FoundFault, RecognitionFault};
 use super::recognise::{Found, recognise};
 use crate::formats::reading_note::{ReadingNote, note_texts};
-use crate::formats::variables::{Value, Variable};
+use crate::formats::variables::{PageIndex, Value, Variable};
 use crate::formats::with_file_name;
 use crate::reading_budget::ReadingBudget;
 
@@ -29,8 +29,8 @@ pub(super) struct FileVariables<'v> {
     pub(super) variables: &'v [Variable],
     /// Remarks on how the file was read.
     pub(super) notes: &'v [ReadingNote],
-    /// Whether, in arrays with three dimensions, the first index selects a matrix, as in NumPy.
-    pub(super) pages_first: bool,
+    /// Index that selects a matrix in arrays with three dimensions.
+    pub(super) page_index: PageIndex,
 }
 
 /// A matrix that is the only variable in its file.
@@ -54,7 +54,7 @@ pub(super) struct LooseMatrix {
     variable: Variable,
     notes: Vec<ReadingNote>,
     /// As in [`FileVariables`].
-    pages_first: bool,
+    page_index: PageIndex,
 }
 
 impl LooseMatrix {
@@ -92,7 +92,7 @@ impl LooseMatrix {
                 value: variable.value.clone(),
             },
             notes: read.notes.to_vec(),
-            pages_first: read.pages_first,
+            page_index: read.page_index,
         })
     }
 }
@@ -141,7 +141,7 @@ fn models_of_group(group: &str, matrices: &[LooseMatrix]) -> Found<FoundModel> {
         .collect();
     // No limit is needed: each file was already read within its own budget.
     let budget = ReadingBudget::new(u64::MAX);
-    match recognise(&variables, pages_first(matrices), &budget) {
+    match recognise(&variables, page_index(matrices), &budget) {
         Ok(recognised) => {
             found.items = recognised.items;
             for fault in recognised.faults {
@@ -190,12 +190,13 @@ fn group_fault(files: &str, fault: RecognitionFault) -> FoundFault {
     }
 }
 
-/// Returns whether, in a group's arrays with three dimensions, the first index selects the matrix:
-/// by the format of the file with A, which determines the number of models.
-fn pages_first(matrices: &[LooseMatrix]) -> bool {
-    matrices
-        .iter()
-        .any(|matrix| matrix.variable.name == "A" && matrix.pages_first)
+/// Returns the index that selects a matrix in a group's arrays with three dimensions: that in the
+/// file with A, which determines the number of models.
+fn page_index(matrices: &[LooseMatrix]) -> PageIndex {
+    match matrices.iter().find(|matrix| matrix.variable.name == "A") {
+        Some(a) => a.page_index,
+        None => PageIndex::Last,
+    }
 }
 
 /// Adds the notes on reading each file to a model, and states the group as its file, with all notes
@@ -222,7 +223,7 @@ mod tests {
     use super::*;
     use crate::formats::variables::Array;
 
-    fn loose(file: &str, array: Array, pages_first: bool) -> LooseMatrix {
+    fn loose(file: &str, array: Array, page_index: PageIndex) -> LooseMatrix {
         let variables = [Variable {
             name: "x".into(),
             value: Value::Array(array),
@@ -230,14 +231,14 @@ mod tests {
         let read = FileVariables {
             variables: &variables,
             notes: &[],
-            pages_first,
+            page_index,
         };
         LooseMatrix::from_variables(read, file, "").unwrap()
     }
 
     fn matrix(file: &str, rows: usize, columns: usize) -> LooseMatrix {
         let array = Array::matrix(rows, columns, vec![-1.0; rows * columns]);
-        loose(file, array, false)
+        loose(file, array, PageIndex::Last)
     }
 
     fn only_fault(found: &Found<FoundModel>) -> &FoundFault {
@@ -306,10 +307,12 @@ mod tests {
             shape: vec![2, 2, 2],
             ..Array::matrix(2, 4, (1..=8).map(f64::from).collect())
         };
-        for (pages_first, expected) in [(false, [1.0, 2.0, 3.0, 4.0]), (true, [1.0, 3.0, 5.0, 7.0])]
-        {
+        for (page_index, expected) in [
+            (PageIndex::Last, [1.0, 2.0, 3.0, 4.0]),
+            (PageIndex::First, [1.0, 3.0, 5.0, 7.0]),
+        ] {
             let found = models_of_matrices(vec![
-                loose("A.mat", cube.clone(), pages_first),
+                loose("A.mat", cube.clone(), page_index),
                 matrix("B.csv", 2, 1),
                 matrix("C.csv", 1, 2),
             ]);

@@ -21,7 +21,7 @@ use crate::formats::reading_note::{ReadingNote, note_texts};
 use crate::formats::text::{
     TextTable, UnitNotGiven, read_matrices, read_matrix, read_table, split_complex,
 };
-use crate::formats::variables::Variable;
+use crate::formats::variables::{PageIndex, Variable};
 use crate::formats::{
     Contents, FolderProgress, ImportedFile, import, import_bytes, with_file_name,
 };
@@ -35,10 +35,6 @@ pub const EVERY_TABLE: &str = "*";
 const HEADING_LINES: usize = 50;
 /// Maximum number of unused variables listed for each file.
 const MOST_LISTED: usize = 20;
-/// `pages_first` in [`FileVariables`] for NumPy arrays.
-const NUMPY_PAGES_FIRST: bool = true;
-/// `pages_first` in [`FileVariables`] for matrices in a text, which have two dimensions.
-const NO_PAGES: bool = false;
 
 /// Results of reading model files.
 #[derive(Clone, Debug, Default)]
@@ -174,28 +170,21 @@ impl<'h> ModelReading<'h> {
             Contents::Variables {
                 variables,
                 notes,
-                pages_first,
+                page_index,
             } => {
                 let read = FileVariables {
                     variables: &variables,
                     notes: &notes,
-                    pages_first,
+                    page_index,
                 };
                 self.recognise_or_set_aside(read, identity, budget)
                     .map_err(error)?
             }
-            Contents::Text(text) => match read_text(&text, path, budget).map_err(error)? {
-                TextContents::Variables { variables, notes } => {
-                    let read = FileVariables {
-                        variables: &variables,
-                        notes: &notes,
-                        pages_first: NO_PAGES,
-                    };
-                    self.recognise_or_set_aside(read, identity, budget)
-                        .map_err(error)?
-                }
-                TextContents::Table(table) => self.read_table(table, name).map_err(error)?,
-            },
+            Contents::Text(text) => {
+                let contents = read_text(&text, path, budget).map_err(error)?;
+                self.models_of_text(contents, identity, budget)
+                    .map_err(error)?
+            }
             Contents::Dataset(dataset, unknown) => Found {
                 items: models_of_dataset(&dataset, name),
                 unused: unknown.iter().map(ToString::to_string).collect(),
@@ -222,7 +211,7 @@ impl<'h> ModelReading<'h> {
                 let read = FileVariables {
                     variables: &variables,
                     notes: &[],
-                    pages_first: NUMPY_PAGES_FIRST,
+                    page_index: PageIndex::First,
                 };
                 self.recognise_or_set_aside(read, identity, budget)
                     .map_err(error)?
@@ -280,11 +269,33 @@ impl<'h> ModelReading<'h> {
             self.matrices.push(matrix);
             return Ok(Found::default());
         }
-        let mut recognised = recognise(read.variables, read.pages_first, budget)?;
+        let mut recognised = recognise(read.variables, read.page_index, budget)?;
         for model in &mut recognised.items {
             model.notes.extend(note_texts(read.notes));
         }
         Ok(recognised)
+    }
+
+    /// Finds the models in a text: matrices like a file's variables, or a table of frequency
+    /// responses.
+    fn models_of_text(
+        &mut self,
+        contents: TextContents,
+        identity: FileIdentity<'_>,
+        budget: &ReadingBudget<'_>,
+    ) -> Result<Found<FoundModel>, VariableFault> {
+        match contents {
+            TextContents::Variables { variables, notes } => {
+                let read = FileVariables {
+                    variables: &variables,
+                    notes: &notes,
+                    // Without effect: matrices in a text have two dimensions.
+                    page_index: PageIndex::Last,
+                };
+                self.recognise_or_set_aside(read, identity, budget)
+            }
+            TextContents::Table(table) => self.read_table(table, identity.name),
+        }
     }
 
     /// Reads the frequency responses in a table. Its headings are those given for this file; else
@@ -376,7 +387,7 @@ fn read_text(
         .file_stem()
         .and_then(|stem| stem.to_str())
         .unwrap_or_default();
-    // Step 1.
+    // Step 1
     if let Some((letter, _)) = matrix_letter(stem) {
         let variable = read_matrix(text, &letter.to_string(), budget)?;
         return Ok(TextContents::Variables {
@@ -384,7 +395,7 @@ fn read_text(
             notes: Vec::new(),
         });
     }
-    // Step 2.
+    // Step 2
     if text.lines().take(HEADING_LINES).any(is_matrix_heading)
         && let Ok(matrices) = read_matrices(text, budget)
     {
@@ -393,7 +404,7 @@ fn read_text(
             notes: matrices.notes,
         });
     }
-    // Step 3.
+    // Step 3
     let split = split_complex(text, budget)?;
     let table = read_table(split.as_deref().unwrap_or(text), budget)?;
     Ok(TextContents::Table(table))

@@ -2,7 +2,8 @@
 //!
 //! J (M4) is the mismatch between a physics model and the identified representative, averaged over
 //! frequency. The assessed model is the *nominal* one, at the condition's own trim; each
-//! condition's other physics models are at perturbed trims.
+//! condition's other physics models are at perturbed trims. The *measuring* responses are the
+//! on-axis responses, or all responses if none is on-axis.
 
 use gdcm_method::fidelity::ACCEPTABLE;
 use gdcm_method::schedule::CostChange;
@@ -50,59 +51,58 @@ pub(super) fn add_assessment(page: &mut Page, analysis: &Analysis) {
     }
     page.list(left_out);
     let has_on_axis = analysis.study.dataset.on_axis().marked().next().is_some();
-    let name = if has_on_axis {
+    let noun = if has_on_axis {
         "on-axis responses"
     } else {
         "responses"
     };
-    let on_axis: Vec<Pair> = analysis.study.dataset.measuring_pairs().marked().collect();
-    if !on_axis.is_empty() {
-        add_responses(page, analysis, &table, &on_axis, name);
+    let measuring: Vec<Pair> = analysis.study.dataset.measuring_pairs().marked().collect();
+    if !measuring.is_empty() {
+        add_responses(page, analysis, &table, &measuring, noun);
     }
 }
 
-/// Adds the appendix with J in parts for the on-axis responses (all if none is on-axis), and with
-/// the off-axis responses.
+/// Adds the appendix with J in parts for the measuring responses, and with the off-axis responses.
 pub(super) fn add_assessment_details(page: &mut Page, analysis: &Analysis) {
     page.appendix("Details of the assessment");
     let table = AssessmentTable::assess(analysis, usual_choice(analysis));
     let measuring = analysis.study.dataset.measuring_pairs();
-    let on_axis: Vec<Pair> = measuring.marked().collect();
+    let marked: Vec<Pair> = measuring.marked().collect();
     let off_axis: Vec<Pair> = measuring.pairs().filter(|pair| !measuring[*pair]).collect();
-    page.table(&parts_table(analysis, &table, &on_axis));
+    page.table(&parts_table(analysis, &table, &marked));
     if !off_axis.is_empty() {
         add_responses(page, analysis, &table, &off_axis, "off-axis responses");
     }
 }
 
-/// Adds the changes in J for the responses `pairs` under the title `name`: a summary, figures and
-/// tables.
+/// Adds the changes in J for the responses `pairs`, which the titles call `noun`: a summary,
+/// figures and tables.
 fn add_responses(
     page: &mut Page,
     analysis: &Analysis,
     table: &AssessmentTable,
     pairs: &[Pair],
-    name: &str,
+    noun: &str,
 ) {
     let measuring = analysis.study.dataset.measuring_pairs();
-    let marked = PairTable::from_fn(measuring.outputs(), measuring.inputs(), |pair| {
+    let summarised = PairTable::from_fn(measuring.outputs(), measuring.inputs(), |pair| {
         pairs.contains(&pair)
     });
-    let summary = summary_text(&table.summary(&marked), &analysis.study.dataset);
-    page.paragraph(&format!("{}: {summary}.", capital(name)));
-    add_figures(page, analysis, pairs, name);
-    add_tables(page, analysis, table, pairs, name);
+    let summary = summary_text(&table.summary(&summarised), &analysis.study.dataset);
+    page.paragraph(&format!("{}: {summary}.", capital(noun)));
+    add_figures(page, analysis, pairs, noun);
+    add_tables(page, analysis, table, pairs, noun);
 }
 
-/// Plots the changes in J for the responses `pairs` under the title `name`.
-fn add_figures(page: &mut Page, analysis: &Analysis, pairs: &[Pair], name: &str) {
+/// Plots the changes in J for the responses `pairs`, which the titles call `noun`.
+fn add_figures(page: &mut Page, analysis: &Analysis, pairs: &[Pair], noun: &str) {
     let drawn = &pairs[..pairs.len().min(PAIRS_DRAWN)];
     for pairs in drawn.chunks(PAIRS_IN_A_FIGURE) {
         let figure = assessment_figure(analysis, pairs, usual_choice(analysis));
         let figure = figure.columns(PLOTS_IN_A_ROW);
         page.figure(
             &figure,
-            &format!("Change of J of {name}"),
+            &format!("Change of J of {noun}"),
             "Total change, and its magnitude and phase parts.",
         );
     }
@@ -117,13 +117,13 @@ fn add_figures(page: &mut Page, analysis: &Analysis, pairs: &[Pair], name: &str)
 
 /// Tabulates ΔJ for the responses `pairs` in the first [`CONDITIONS_DRAWN`] conditions, with as
 /// many conditions side by side as fit on a page, and lists the reasons for missing values; the
-/// titles contain `name`.
+/// titles call the responses `noun`.
 fn add_tables(
     page: &mut Page,
     analysis: &Analysis,
     assessment: &AssessmentTable,
     pairs: &[Pair],
-    name: &str,
+    noun: &str,
 ) {
     let dataset = &*analysis.study.dataset;
     let shown = &assessment.conditions[..assessment.conditions.len().min(CONDITIONS_DRAWN)];
@@ -142,7 +142,7 @@ fn add_tables(
         part: CostChange::total,
     };
     page.wide_table(
-        &contents.table(format!("ΔJ of {name}")),
+        &contents.table(format!("ΔJ of {noun}")),
         CONDITIONS_SIDE_BY_SIDE,
     );
     let more = assessment.conditions.len() - shown.len();

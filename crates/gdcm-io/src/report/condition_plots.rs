@@ -1,5 +1,7 @@
 //! A condition's plots in the report. Its *representatives*, one physics and one identified model,
-//! are compared (M5); the corrected responses are those of the physics representative.
+//! are compared (M5); the corrected responses are those of the physics representative. G and D are
+//! the gain and the delay that a response needs (M6). The *measuring* responses are the on-axis
+//! responses, or all responses if none is on-axis.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -19,7 +21,16 @@ use super::limits::PAIRS_DRAWN;
 use super::page::Page;
 use super::shown_models::models_hidden;
 
-/// Adds Bode plots for the on-axis responses (all responses if none is on-axis).
+/// Maximum number of responses per figure, in one row.
+const PAIRS_IN_A_FIGURE: usize = 6;
+/// Maximum number of plots per figure row.
+const PLOTS_IN_A_ROW: usize = PAIRS_IN_A_FIGURE;
+/// Maximum number of responses in the overview, which shows only magnitudes.
+const PAIRS_IN_OVERVIEW: usize = 60;
+/// Maximum number of plots per row of the overview; a row shows whole outputs, at least one.
+const OVERVIEW_PLOTS_IN_A_ROW: usize = 10;
+
+/// Adds Bode plots for the measuring responses.
 pub(super) fn add_response_plots(
     page: &mut Page,
     analysis: &Analysis,
@@ -41,7 +52,7 @@ pub(super) fn add_response_plots(
 }
 
 /// Computes a condition's curves and adds its other plots: ratios and phase differences for the
-/// on-axis responses (all if none is on-axis), an overview of all responses, and the poles.
+/// measuring responses, an overview of all responses, and the poles.
 pub(super) fn add_condition_plots(
     page: &mut Page,
     analysis: &Analysis,
@@ -92,13 +103,13 @@ fn options(source: &ConditionSource<'_>, result: &ConditionAnalysis) -> BodeOpti
     }
 }
 
-/// Returns the on-axis responses (all if none is on-axis), at most [`PAIRS_DRAWN`].
+/// Returns the measuring responses, at most [`PAIRS_DRAWN`].
 fn drawn_pairs(source: &ConditionSource<'_>) -> Vec<Pair> {
     let measuring = source.study.dataset.measuring_pairs();
     measuring.marked().take(PAIRS_DRAWN).collect()
 }
 
-/// Adds a sentence if there are more on-axis responses (all if none is on-axis) than are drawn.
+/// Adds a sentence if there are more measuring responses than are drawn.
 fn add_number_drawn(page: &mut Page, source: &ConditionSource<'_>) {
     let measuring = source.study.dataset.measuring_pairs().marked().count();
     if measuring > PAIRS_DRAWN {
@@ -112,17 +123,8 @@ fn add_number_drawn(page: &mut Page, source: &ConditionSource<'_>) {
     }
 }
 
-/// Maximum number of responses per figure, in one row.
-const PAIRS_IN_A_FIGURE: usize = 6;
-/// Maximum number of plots per figure row.
-const PLOTS_IN_A_ROW: usize = PAIRS_IN_A_FIGURE;
-/// Maximum number of responses in the overview, which shows only magnitudes.
-const PAIRS_IN_OVERVIEW: usize = 60;
-/// Maximum number of plots per row of the overview; a row shows whole outputs, at least one.
-const OVERVIEW_PLOTS_IN_A_ROW: usize = 10;
-
 /// Plots ratio and phase difference between the identified representative and the physics models,
-/// for the on-axis responses (all if none is on-axis).
+/// for the measuring responses.
 fn add_error_plots(page: &mut Page, source: &ConditionSource<'_>, options: &BodeOptions) {
     let id = source.curves.condition.id();
     for pairs in drawn_pairs(source).chunks(PAIRS_IN_A_FIGURE) {

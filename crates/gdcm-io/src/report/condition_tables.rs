@@ -1,10 +1,11 @@
 //! Condition tables in the report: an overview; channels, responses and models for one condition.
 //!
-//! Each condition's gains and delays are fitted so that the net gain and net delay of every
-//! response come near its G and D (M6); *held* responses are constrained to them, *ignored* ones
-//! are not fitted. Models are *kept* unless the analyst rejects them. A model's *mean distance*, in
-//! √J, is that from the other kept models in its bundle; the *discontinuity ratio* of a physics
-//! model compares its distances with those that the perturbations explain (M5).
+//! G and D are the gain and the delay that a response needs (M6). Each condition's channel gains
+//! and delays are fitted so that the net gain and net delay of every response, those of its input
+//! and its output together, come near its G and D; *held* responses are constrained to them,
+//! *ignored* ones are not fitted. Models are *kept* unless the analyst rejects them. A model's
+//! *mean distance*, in √J, is that from the other kept models in its bundle; the *discontinuity
+//! ratio* of a physics model compares its distances with those that the perturbations explain (M5).
 
 use gdcm_method::correction::{Channel, Outcome};
 use gdcm_method::fidelity::SUGGESTION_RATIO;
@@ -181,8 +182,9 @@ fn change_or_missing(value: Option<f64>) -> String {
 /// fitted, in this order.
 fn response_cells(study: &Study, result: &ConditionAnalysis, pair: Pair) -> [String; 11] {
     let cost = result.cost[pair];
-    let is_defined = result.wanted_gain(pair).is_some();
-    let treatment = if !is_defined {
+    let g = result.wanted_gain(pair);
+    let d_ms = result.wanted_delay_s(pair).map(s_to_ms);
+    let treatment = if g.is_none() {
         "no G, no D"
     } else if result.held()[pair] {
         "held"
@@ -192,14 +194,13 @@ fn response_cells(study: &Study, result: &ConditionAnalysis, pair: Pair) -> [Str
         "fitted"
     };
     let is_on_axis = study.dataset.on_axis()[pair];
-    let wanted_delay_ms = result.wanted_delay_s(pair).map(s_to_ms);
     [
         study.dataset.pair_name(pair),
         if is_on_axis { "yes" } else { "no" }.to_owned(),
         treatment.to_owned(),
-        decimals_or_missing(result.wanted_gain(pair), 3),
+        decimals_or_missing(g, 3),
         decimals(result.correction.net_gain(pair), 3),
-        decimals_or_missing(wanted_delay_ms, 1),
+        decimals_or_missing(d_ms, 1),
         decimals(s_to_ms(result.correction.net_delay_s(pair)), 1),
         decimals_or_missing(cost.map(|cost| cost.uncorrected.total()), 1),
         decimals_or_missing(cost.map(|cost| cost.corrected.total()), 1),

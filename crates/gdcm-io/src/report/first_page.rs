@@ -1,8 +1,12 @@
 //! The report's first page: verdict, corrections, signatures.
 //!
-//! *Held* responses are constrained to their G and D (M6); the verdict counts how many are matched,
-//! in gain and in phase. A *net* gain or delay is that of a response: its output's and its input's
-//! together. J (M4) is the mismatch with the identified representative.
+//! A response's G and D are the gain and the delay that it needs (M6); its *net* gain and delay are
+//! those of its output and its input together. *Held* responses are constrained to their G and D;
+//! the verdict counts how many are matched, in gain and in phase. J (M4) is the mismatch with the
+//! identified representative.
+//!
+//! The tables show the held responses; if none is held, the on-axis responses; if none is on-axis,
+//! all.
 
 use gdcm_method::correction::Channel;
 use gdcm_method::uncertainty::Scalar;
@@ -82,8 +86,7 @@ fn failures(analysis: &Analysis) -> Vec<String> {
     failures
 }
 
-/// Returns the constrained responses; if none is constrained, the on-axis ones (all if none is
-/// on-axis). At most [`PAIRS_SHOWN`].
+/// Returns the responses in the tables, at most [`PAIRS_SHOWN`].
 fn shown_pairs(study: &Study) -> Vec<Pair> {
     let held = study.settings.constrained.marked();
     let mut pairs: Vec<Pair> = held.take(PAIRS_SHOWN).collect();
@@ -94,9 +97,8 @@ fn shown_pairs(study: &Study) -> Vec<Pair> {
     pairs
 }
 
-/// Returns the noun for the responses in the tables: those that are constrained; if there are none,
-/// those on the axis; else all.
-fn noun_of_shown(study: &Study) -> &'static str {
+/// Returns the noun for the responses in the tables.
+fn shown_noun(study: &Study) -> &'static str {
     if study.settings.constrained.marked().next().is_some() {
         "held responses"
     } else if study.dataset.on_axis().marked().next().is_some() {
@@ -114,7 +116,7 @@ fn shown_words(study: &Study, pairs: &[Pair]) -> String {
     } else {
         held
     };
-    let noun = noun_of_shown(study);
+    let noun = shown_noun(study);
     if count > pairs.len() {
         format!("{} of {count} {noun}", pairs.len())
     } else {
@@ -132,7 +134,7 @@ fn correction_table(analysis: &Analysis, pairs: &[Pair]) -> Table {
     let title = format!(
         "Corrections: net gains of {}{interval}, and mean J of all {}",
         shown_words(study, pairs),
-        noun_of_shown(study)
+        shown_noun(study)
     );
     let mut columns = vec![
         "condition".to_owned(),
@@ -247,13 +249,13 @@ fn net_signed_delay_ms(result: &ConditionAnalysis, pair: Pair) -> f64 {
 pub fn assessment_sentence(analysis: &Analysis) -> String {
     let dataset = &analysis.study.dataset;
     let measuring = dataset.measuring_pairs();
-    let which = if dataset.on_axis().marked().next().is_some() {
+    let noun = if dataset.on_axis().marked().next().is_some() {
         "on-axis responses"
     } else {
         "responses"
     };
     let table = AssessmentTable::assess(analysis, usual_choice(analysis));
-    let found = summary_text(&table.summary(&measuring), dataset);
+    let summary = summary_text(&table.summary(&measuring), dataset);
     let fails_between = match &analysis.schedule {
         Ok(schedule) => schedule.interpolation_fails(),
         Err(_) => false,
@@ -264,7 +266,7 @@ pub fn assessment_sentence(analysis: &Analysis) -> String {
         ""
     };
     format!(
-        "Change in J of the nominal models due to the schedule, over the {which} of all assessed \
-        conditions: {found}.{between}"
+        "Change in J of the nominal models due to the schedule, over the {noun} of all assessed \
+        conditions: {summary}.{between}"
     )
 }

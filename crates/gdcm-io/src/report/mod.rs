@@ -1,8 +1,8 @@
 //! Report on a study: a single HTML file without external resources, for printing on A4 or letter
 //! paper. The same inputs give the same bytes: the report states neither the time nor any folder.
 //!
-//! The first page has the verdict, the corrections and the signatures. The contents follow, then the
-//! sections that a reader needs, with figures four to a page, and appendices with the rest.
+//! The first page has the verdict, the corrections and the signatures. The contents follow, then
+//! the sections that a reader needs, with figures four to a page, and appendices with the rest.
 //!
 //! ```text
 //! 1  compute what the analysis lacks and several sections show: error bars, the assessments of

@@ -1,7 +1,9 @@
 //! Report section on the models that do not enter the results, and on those suggested as outliers.
 //!
-//! A physics model's *discontinuity ratio* compares its distances from the other models with those
-//! that the perturbations explain (M5); a model above the limit is suggested as an outlier.
+//! A model does not enter the results if the analyst *rejects* it, or if the analysis *sets it
+//! aside*, because it lacks a response that other models have (M5). A physics model's
+//! *discontinuity ratio* compares its distances from the other models with those that the
+//! perturbations explain (M5); a model above the limit is suggested as an outlier.
 
 use gdcm_method::fidelity::SUGGESTION_RATIO;
 use gdcm_model::dataset::{BundleKind, Condition, ModelId};
@@ -14,9 +16,8 @@ use gdcm_words::caution::caution_text;
 use super::page::Page;
 use super::wording::{MISSING, NAMES_SHOWN, counted_are, names};
 
-/// Adds the section on excluded models: rejected ones with the analyst's reasons, those excluded by
-/// the analysis, those kept although suggested as outliers, and those that the analyst chose as
-/// representatives.
+/// Adds the section on models left out: rejected ones with the analyst's reasons, those set aside,
+/// those kept although suggested as outliers, and those that the analyst chose as representatives.
 pub(super) fn add_models_left_out(page: &mut Page, analysis: &Analysis) {
     page.section("Models left out");
     let rejected = rejected_table(analysis);
@@ -97,8 +98,8 @@ fn rejected_rows(analysis: &Analysis, condition: &Condition, kind: BundleKind, t
     }
 }
 
-/// Describes a condition's models that are excluded by the analysis, kept although suggested as
-/// outliers, or pinned by the analyst, that is, chosen as representatives.
+/// Describes a condition's models that are set aside, kept although suggested as outliers, or
+/// pinned by the analyst, that is, chosen as representatives.
 fn left_out_lines(analysis: &Analysis, condition: &Condition) -> Vec<String> {
     let study = &analysis.study;
     let id = condition.id();

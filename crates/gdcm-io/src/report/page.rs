@@ -14,11 +14,11 @@ use super::wording::counted_are;
 /// the thinnest line width, hence invisible. Simplifying reduces the file size to a quarter.
 const TOLERANCE_PT: f64 = 0.1;
 /// Maximum number of rows in a table; the result files contain all rows.
-const ROWS: usize = 1000;
+const MOST_ROWS: usize = 1000;
 /// Maximum number of rows in a table that is kept on one page.
 const ROWS_ON_A_SHEET: usize = 30;
 /// Maximum number of characters in a cell that is kept on one line.
-const SHORT: usize = 24;
+const LONGEST_LINE_OF_A_CELL: usize = 24;
 /// Figure height \[pt\] above which plots are flattened: four such figures with their captions fill
 /// an A4 or letter page.
 const FIGURE_PT: f64 = 145.0;
@@ -115,7 +115,7 @@ impl Page {
     fn heading(&mut self, tag: &str, number: String, title: &str) {
         self.body.push_str(&format!(
             "<{tag} id=\"s{number}\">{number} {}</{tag}>\n",
-            words(title)
+            markup_text(title)
         ));
         self.headings.push(Heading {
             number,
@@ -159,15 +159,15 @@ impl Page {
         for (name, value) in facts {
             self.body.push_str(&format!(
                 "<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n",
-                words(name),
-                words(&value)
+                markup_text(name),
+                markup_text(&value)
             ));
         }
         self.body.push_str("</tbody></table>\n");
     }
 
-    /// Adds a table with at most [`ROWS`] rows under its title, as a [`NotedTable`]; the headings
-    /// are repeated on every printed page. A table without rows is omitted.
+    /// Adds a table with at most [`MOST_ROWS`] rows under its title, as a [`NotedTable`]; the
+    /// headings are repeated on every printed page. A table without rows is omitted.
     pub(super) fn table(&mut self, table: &Table) {
         if table.rows.is_empty() {
             return;
@@ -192,15 +192,15 @@ impl Page {
         self.body
             .push_str(&table_row("th", &table.columns, &classes));
         self.body.push_str("</thead>\n<tbody>\n");
-        for cells in table.rows.iter().take(ROWS) {
+        for cells in table.rows.iter().take(MOST_ROWS) {
             self.body.push_str(&table_row("td", cells, &classes));
         }
         self.body.push_str("</tbody>\n</table>\n");
         if !notes.is_empty() {
             self.body.push_str(&classed("p", "notes", &notes.join(" ")));
         }
-        if table.rows.len() > ROWS {
-            let more = table.rows.len() - ROWS;
+        if table.rows.len() > MOST_ROWS {
+            let more = table.rows.len() - MOST_ROWS;
             self.paragraph(&format!("{} omitted here.", counted_are(more, "more row")));
         }
     }
@@ -257,7 +257,7 @@ impl Page {
             below.push_str(&classed("p", "below", line));
         }
         let contents = self.contents();
-        let head = words(title);
+        let head = markup_text(title);
         let style = STYLE.trim_end();
         let mut body = self.body;
         body.insert_str(self.contents_at.unwrap_or(0), &contents);
@@ -302,7 +302,7 @@ impl Page {
             };
             entries.push_str(&format!(
                 "<li class=\"{class}\"><a href=\"#s{number}\">{number} {}</a></li>\n",
-                words(title)
+                markup_text(title)
             ));
         }
         format!("<nav aria-label=\"Contents\">\n<h2>Contents</h2>\n<ul>\n{entries}</ul>\n</nav>\n")
@@ -320,8 +320,8 @@ fn appendix_letters(count: usize) -> String {
 }
 
 /// Draws a figure across the page width and at most a quarter page high: plots are flattened as far
-/// as necessary, but not below [`LEAST_ASPECT`]. The height is linear in the aspect ratio, except for
-/// tick label widths.
+/// as necessary, but not below [`LEAST_ASPECT`]. The height is linear in the aspect ratio, except
+/// for tick label widths.
 fn quarter_page(figure: Figure) -> Drawing {
     let [_, height] = figure.drawing(ColumnWidth::Double).size;
     if height <= FIGURE_PT {
@@ -367,7 +367,7 @@ fn class_of(table: &Table, column: usize) -> &'static str {
     let is_short = table
         .rows
         .iter()
-        .all(|row| row[column].chars().count() <= SHORT);
+        .all(|row| row[column].chars().count() <= LONGEST_LINE_OF_A_CELL);
     match (table.has_numbers(column), is_short) {
         (true, _) => "n",
         (false, true) => "s",
@@ -376,18 +376,18 @@ fn class_of(table: &Table, column: usize) -> &'static str {
 }
 
 /// Escapes a text from any source, so that it contains neither markup nor invisible characters.
-fn words(text: &str) -> String {
+fn markup_text(text: &str) -> String {
     escaped(&sanitized(text))
 }
 
 /// Returns an HTML element that contains `text`, escaped.
 fn element(tag: &str, text: &str) -> String {
-    format!("<{tag}>{}</{tag}>\n", words(text))
+    format!("<{tag}>{}</{tag}>\n", markup_text(text))
 }
 
 /// Returns an HTML element with a class that contains `text`, escaped.
 fn classed(tag: &str, class: &str, text: &str) -> String {
-    format!("<{tag} class=\"{class}\">{}</{tag}>\n", words(text))
+    format!("<{tag} class=\"{class}\">{}</{tag}>\n", markup_text(text))
 }
 
 #[cfg(test)]
@@ -511,12 +511,12 @@ mod tests {
     fn words_from_a_file_are_no_markup_and_hide_nothing() {
         let name = "<b onclick=\"x\">V+5kt & 'roll'\u{1b}[2J\u{202e}";
         let text = "&lt;b onclick=&quot;x&quot;&gt;V+5kt &amp; 'roll'\\u{1b}[2J\\u{202e}";
-        assert_eq!(words(name), text);
+        assert_eq!(markup_text(name), text);
         assert_eq!(element("td", name), format!("<td>{text}</td>\n"));
     }
 
     #[test]
     fn letters_of_every_language_stay() {
-        assert_eq!(words("Höhe Δφ → 重量"), "Höhe Δφ → 重量");
+        assert_eq!(markup_text("Höhe Δφ → 重量"), "Höhe Δφ → 重量");
     }
 }

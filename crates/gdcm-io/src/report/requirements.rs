@@ -33,7 +33,7 @@ use super::{CancellationOnly, ReportSubject};
 const COLUMNS: usize = 9;
 /// Columns that each part of the summary table repeats: condition, airspeed and model.
 const SUMMARY_HEADS: usize = 3;
-/// Maximum number of other columns in the summary table.
+/// Maximum number of other columns in the summary table, two fewer than in the other tables.
 const SUMMARY_COLUMNS: usize = COLUMNS - 2;
 /// Maximum number of plots per row in the figure of bandwidths.
 const BANDWIDTH_COLUMNS: usize = 4;
@@ -65,7 +65,7 @@ pub(super) fn add_requirements(
         identified representative. These values do not replace a qualification, which requires \
         flight tests at specified conditions with specified inputs, and a pilot's assessment.",
     );
-    if requirements.bandwidth.iter().any(is_known) {
+    if requirements.bandwidth.iter().any(is_defined) {
         let figure = requirements_figure(requirements, &study.dataset, &study.requirements.levels);
         let caption = "Phase delay over bandwidth; arrows lead from physics to corrected models.";
         let title = figure.title.clone();
@@ -155,16 +155,16 @@ fn add_bandwidth(page: &mut Page, requirements: &Requirements, study: &Study) {
     for source in level_sources(study) {
         page.paragraph(&source);
     }
-    let mut known = requirements.clone();
-    known.bandwidth.retain(is_known);
+    let mut with_bandwidth = requirements.clone();
+    with_bandwidth.bandwidth.retain(is_defined);
     page.table(&bandwidth_table(
-        &known,
+        &with_bandwidth,
         dataset,
         &study.requirements.levels,
     ));
     let mut remarks = ConditionRemarks::default();
     for finding in &requirements.bandwidth {
-        if !is_known(finding) {
+        if !is_defined(finding) {
             let why = finding.absent.get("omega_bw_rad_s");
             let words = format!(
                 "{}: {}",
@@ -198,7 +198,7 @@ fn level_sources(study: &Study) -> Vec<String> {
 }
 
 /// Returns whether the bandwidth or the phase delay is defined.
-fn is_known(finding: &BandwidthFinding) -> bool {
+fn is_defined(finding: &BandwidthFinding) -> bool {
     finding.omega_bw_rad_s.is_some() || finding.phase_delay_s.is_some()
 }
 

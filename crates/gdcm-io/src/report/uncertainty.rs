@@ -98,7 +98,8 @@ pub(super) fn add_uncertainty_details(page: &mut Page, analysis: &Analysis) {
     };
     let dataset = &analysis.study.dataset;
     page.appendix("Details of the uncertainty");
-    page.table(&difference_table(dataset, uncertainty).0);
+    let (differences, _) = difference_table(dataset, uncertainty);
+    page.table(&differences);
     page.table(&second_variable_table(dataset, uncertainty));
     page.table(&bar_table(analysis, uncertainty));
 }

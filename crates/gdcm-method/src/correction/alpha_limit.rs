@@ -1,4 +1,5 @@
-//! Limit `alpha -> 0+` for the regularisation weight: step 4 in `solve` (M8, M9).
+//! Limit `alpha -> 0+` for the regularisation weight: step 4 in `solve` (M8, M9). `alpha` weighs
+//! the channels' squared deviations from *neutral*, which is gain 1 or delay 0.
 //!
 //! A *component* is a group of channels that constrained entries connect; its *scale* is the common
 //! shift that the constraints leave free (`components`). A channel's *coordinate* is its gain's
@@ -15,9 +16,9 @@ use super::branch_and_bound::objective::Objective;
 use super::components::{ChannelCoordinates, Components, Placement};
 use super::quantity::{GainObjective, Quantity};
 
-/// Takes the limit `alpha -> 0+`: the fit leaves the common shift of a floating piece's scales
-/// undetermined, so that the shift which minimises the regularised deviations from neutral is
-/// taken.
+/// Takes the limit `alpha -> 0+`: the fit does not determine the common shift of a floating piece's
+/// scales, which is therefore set to minimise the regularised deviations from neutral, as far as
+/// the box allows.
 pub(super) fn take_alpha_limit(
     quantity: Quantity,
     components: &Components,
@@ -46,9 +47,10 @@ fn select_piece(piece: &[usize], nodes: &[Placement], values: &[f64]) -> Vec<f64
     selected
 }
 
-/// Returns the shift for a piece's scales that minimises the regularised deviations from neutral;
-/// it raises the input coordinates and lowers the output coordinates by the same amount. The
-/// outputs are regularised (the inputs, if the piece has no output); for signed delays, both.
+/// Returns the shift for a piece's scales that minimises the regularised deviations from neutral.
+/// It raises the piece's input coordinates `x` and lowers its output coordinates `y` by the same
+/// amount. The outputs are regularised (the inputs, if the piece has no output); for signed delays,
+/// both.
 ///
 /// ```text
 /// signed delays               (sum y - sum x) / (count of x and y)
@@ -56,13 +58,11 @@ fn select_piece(piece: &[usize], nodes: &[Placement], values: &[f64]) -> Vec<f64
 /// delays, gains in dB         mean y
 /// gains compared as ratios    ln(sum k^2 / sum k),  k = e^y
 /// ```
-///
-/// `x` are the input, `y` the output coordinates.
 fn least_departure_shift(quantity: Quantity, channels: &ChannelCoordinates) -> f64 {
     let ChannelCoordinates { inputs, outputs } = channels;
     if quantity.regularises_inputs() {
-        let apart = outputs.iter().sum::<f64>() - inputs.iter().sum::<f64>();
-        return apart / (inputs.len() + outputs.len()).max(1) as f64;
+        let difference = outputs.iter().sum::<f64>() - inputs.iter().sum::<f64>();
+        return difference / (inputs.len() + outputs.len()).max(1) as f64;
     }
     if outputs.is_empty() {
         return if inputs.is_empty() {

@@ -2,13 +2,14 @@
 //! the responses need (M7).
 //!
 //! ```text
-//! gains    LB = min(1, q-quantile),  UB = max(1, (1-q)-quantile)    of |H_ref| / |H_sim|
-//! delays                             UB = max(0, (1-q)-quantile)    of Delta phi(H_sim, H_ref) / omega
+//! gains    LB = min(1, q-quantile),  UB = max(1, (1-q)-quantile)   of |H_ref| / |H_sim|
+//! delays                             UB = max(0, (1-q)-quantile)   of Delta phi / omega
 //! ```
 //!
-//! `H_sim` is the physics model's response, `H_ref` the identified model's, `q` the share of values
-//! that may lie beyond each bound. The quantiles pool the frequencies of the on-axis responses. The
-//! lower bound on a signed delay follows from the lead filters instead (`lead_design`).
+//! `H_sim` is the physics model's response, `H_ref` the identified model's, `Delta phi` the phase
+//! by which the physics model leads, `q` the share of values that may lie beyond each bound. The
+//! quantiles pool the frequencies of the on-axis responses. The lower bound on a signed delay
+//! follows from the lead filters instead (`lead_design`).
 
 use serde::{Deserialize, Serialize};
 

@@ -33,7 +33,8 @@ impl ChannelModel {
     /// gain at infinite frequency, `(w2 / w1)^2` or `w2 / w1`:
     ///
     /// ```text
-    /// second order   A = [0 1; -w2^2 -sqrt(2) w2],  B = [0; 1],  C = [R (w1^2 - w2^2)  R sqrt(2) (w1 - w2)],  D = R
+    /// second order   A = [0 1; -w2^2 -sqrt(2) w2],  B = [0; 1],
+    ///                C = [R (w1^2 - w2^2)  R sqrt(2) (w1 - w2)],  D = R
     /// first order    A = -w2,  B = 1,  C = R (w1 - w2),  D = R
     /// ```
     pub fn lead(filter: LeadFilter) -> Self {

@@ -2,8 +2,9 @@
 //! together (M8 and M9).
 //!
 //! ```text
-//! value of a node = offset + s,      s: the scale of its component
-//! value of an input's node = x_i,  of an output's node = -y_o      x_i, y_o: coordinates (ln gains or delays)
+//! value of a node = offset + s      s: the scale of its component
+//! value of an input's node = x_i,  of an output's node = -y_o
+//! x_i, y_o: coordinates of the input and output channels (logarithms of gains, or delays)
 //! ```
 //!
 //! A *constrained entry* is a response whose net gain or delay must equal its delta, the gain or
@@ -43,12 +44,14 @@ impl Components {
     /// Finds the components that the constrained entries form.
     ///
     /// ```text
-    /// 1  offsets: the first node of each component at 0, the others along a spanning tree of entries
-    /// 2  interval of each scale, from the box
-    /// 3  offsets moved so that scale 0 is the middle of each interval, and the new intervals
-    /// 4  infeasibility: an empty interval (in 2 and 3), or entries that close a loop and do not fit the offsets
+    /// 1  offsets: first node of each component at 0, the others along a spanning tree of entries
+    /// 2  interval of each scale, from the box; if it is empty, the component is infeasible
+    /// 3  move the offsets so that scale 0 is the middle of each interval: there, no channel is far
+    ///    outside the box; then the new intervals, as in 2
+    /// 4  components with entries that close a loop and do not fit the offsets are infeasible, too
     /// ```
     pub(crate) fn new(constraints: &Constraints) -> Self {
+        // Step 1
         let mut placed: Vec<Option<Placement>> = vec![None; constraints.nodes()];
         let mut count = 0;
         for node in 0..placed.len() {
@@ -68,9 +71,12 @@ impl Components {
             upper: vec![f64::INFINITY; count],
             infeasibility: vec![0.0; count],
         };
+        // Step 2
         components.set_intervals(constraints);
+        // Step 3
         components.centre_offsets(constraints.range);
         components.set_intervals(constraints);
+        // Step 4
         components.check_loops(constraints);
         components
     }
@@ -121,8 +127,8 @@ impl Components {
         }
     }
 
-    /// Step 3: shifts the offsets so that scale 0 is in the middle of each component's interval,
-    /// where no channel is far outside the box. The intervals must then be set again.
+    /// Step 3: shifts the offsets so that scale 0 is in the middle of each component's interval.
+    /// The intervals must then be set again.
     fn centre_offsets(&mut self, range: Interval) {
         // A scale at an interval end has two rounding errors: in the range end, and from
         // subtracting the offset.
@@ -149,9 +155,9 @@ impl Components {
             *upper = upper.min(range.high - node.offset.value);
         }
         for component in 0..self.count() {
-            let lacking = self.lower[component] - self.upper[component];
-            if lacking > 0.0 {
-                self.infeasibility[component] = lacking;
+            let excess = self.lower[component] - self.upper[component];
+            if excess > 0.0 {
+                self.infeasibility[component] = excess;
                 let middle = 0.5 * (self.lower[component] + self.upper[component]);
                 self.lower[component] = middle;
                 self.upper[component] = middle;
@@ -162,9 +168,9 @@ impl Components {
     /// Step 4: raises every component's infeasibility to the largest inconsistency among its loops.
     fn check_loops(&mut self, constraints: &Constraints) {
         for entry in &constraints.entries {
-            let miss = (self.sum(entry.pair) - entry.sum).abs();
+            let inconsistency = (self.sum(entry.pair) - entry.sum).abs();
             let component = self.nodes[entry.pair.input].component;
-            self.infeasibility[component] = self.infeasibility[component].max(miss);
+            self.infeasibility[component] = self.infeasibility[component].max(inconsistency);
         }
     }
 }
@@ -180,12 +186,13 @@ pub(crate) struct Placement {
 }
 
 impl Placement {
-    /// Returns the placement for the node at a constrained entry's other end, `by` above this node.
-    fn across(self, by: f64) -> Self {
-        // Error: converting `by` to a logarithm or another time unit has rounded once.
+    /// Returns the placement for the node at a constrained entry's other end, whose value exceeds
+    /// this node's by `difference`.
+    fn across(self, difference: f64) -> Self {
+        // Error: converting the delta to a logarithm or another time unit has rounded once.
         let mut offset = Rounded {
-            value: by,
-            error: f64::EPSILON * by.abs(),
+            value: difference,
+            error: f64::EPSILON * difference.abs(),
         };
         offset.add(self.offset);
         Self { offset, ..self }
@@ -214,6 +221,7 @@ fn place_connected_nodes(placed: &mut [Option<Placement>], constraints: &Constra
         for entry in &constraints.entries {
             let PairNodes { input, output } = constraints.nodes_of(entry.pair);
             match (placed[input], placed[output]) {
+                // input node - output node = x_i + y_o, the prescribed sum
                 (Some(known), None) => placed[output] = Some(known.across(-entry.sum)),
                 (None, Some(known)) => placed[input] = Some(known.across(entry.sum)),
                 _ => continue,

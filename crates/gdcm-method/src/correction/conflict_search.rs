@@ -38,9 +38,12 @@ pub(crate) struct EntryConflict {
 /// ```text
 /// for each missed entry
 ///     1  loop <- the entry, and the shortest way along the flow from its end back to its start
-///     2  path <- shortest way from a lower bound to its start, the entry, shortest way from its end to an upper bound
-///     3  the shorter of both, where each bound counts as one entry; the loop if they are equal; no conflict without either
-///     4  its shortest part that the bounds at both ends do not permit; without such a part, the whole
+///     2  path <- the shortest way from a lower bound to its start, the entry, and the shortest way
+///                from its end to an upper bound
+///     3  the shorter of both, where each bound counts as one entry; the loop if they are equal;
+///        no conflict without either
+///     4  its shortest part that the bounds at both ends do not permit; without such a part, the
+///        whole loop or path
 /// ```
 pub(crate) fn entry_conflicts(
     problem: &Problem,
@@ -62,7 +65,8 @@ pub(crate) fn entry_conflicts(
     for pull in pulls {
         let missing = pull.weight - (point[pull.to] - point[pull.from]);
         if missing > tolerance {
-            // Three breadth-first searches; each examines every pull at every channel.
+            // Three breadth-first searches; each examines every pull at every channel, which counts
+            // as 1/24 of a term evaluation.
             effort.spend((pulls.len() * constraints.nodes()) as u64 / 8);
             effort.check()?;
             if let Some(conflict) = search.smallest_through(pull) {
@@ -75,6 +79,9 @@ pub(crate) fn entry_conflicts(
     }
     Ok(found)
 }
+
+/// Number of bounds in a path's conflict, one at each end.
+const BOUNDS_OF_A_PATH: usize = 2;
 
 /// Whether a sequence of pulls is open or closes a loop.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -95,32 +102,28 @@ impl ConflictSearch<'_> {
     /// leads through it.
     fn smallest_through(&self, pull: &Pull) -> Option<Conflict> {
         // Step 1
-        let around = self.flow.way_back(pull);
+        let around = self.flow.loop_through(pull);
         // Step 2
         let path = self.flow.path_through(pull);
         // Step 3
-        match (around, path) {
-            // The loop has `around.len() + 1` entries, the path also two bounds.
-            (Some(around), Some(path)) if around.len() < path.len() + 2 => {
-                Some(self.loop_conflict(pull, around))
-            }
-            (_, Some(path)) => Some(
-                self.smallest_part(&path, Shape::Path)
-                    .unwrap_or_else(|| self.path_conflict(&path)),
-            ),
-            (Some(around), None) => Some(self.loop_conflict(pull, around)),
-            (None, None) => None,
+        let takes_loop = match (&around, &path) {
+            (Some(around), Some(path)) => around.len() <= path.len() + BOUNDS_OF_A_PATH,
+            _ => path.is_none(),
+        };
+        // Step 4
+        if takes_loop {
+            let around = around?;
+            let part = self.smallest_part(&around, Shape::Loop);
+            Some(part.unwrap_or_else(|| self.loop_conflict(&around)))
+        } else {
+            let path = path?;
+            let part = self.smallest_part(&path, Shape::Path);
+            Some(part.unwrap_or_else(|| self.path_conflict(&path)))
         }
     }
 
-    /// Returns the conflict in the loop formed by `pull` and the path `around`, which leads back to
-    /// its start.
-    fn loop_conflict(&self, pull: &Pull, around: Vec<Pull>) -> Conflict {
-        let mut pulls = vec![*pull];
-        pulls.extend(around);
-        if let Some(conflict) = self.smallest_part(&pulls, Shape::Loop) {
-            return conflict;
-        }
+    /// Returns the conflict between the pulls in a loop.
+    fn loop_conflict(&self, pulls: &[Pull]) -> Conflict {
         let sum: f64 = pulls.iter().map(|pull| pull.weight).sum();
         let mismatch = self
             .problem

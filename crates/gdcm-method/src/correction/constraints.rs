@@ -1,13 +1,13 @@
 //! A problem's constraints in coordinates: prescribed sums over two channels, and a box (M8, M9).
 //!
 //! ```text
-//! x_i + y_o = sum      for each constrained entry (output o, input i), with the coordinates x_i of the inputs and y_o of
-//!                      the outputs: logarithms of gains, or delays
+//! x_i + y_o = sum       for each constrained entry (output o, input i)
 //! low <= x, y <= high
 //! ```
 //!
-//! A *constrained entry* is a response whose net gain or delay must equal its delta, the gain or
-//! delay that it needs. The channels are the *nodes* in a graph, the inputs first, then the
+//! `x_i` and `y_o` are the coordinates of the input and output channels: logarithms of gains, or
+//! delays. A *constrained entry* is a response whose net gain or delay must equal its delta, the
+//! gain or delay that it needs. The channels are the *nodes* in a graph, the inputs first, then the
 //! outputs. An input node has the value `v = x_i`, an output node `v = -y_o`, so that a constrained
 //! entry prescribes the difference between two nodes.
 

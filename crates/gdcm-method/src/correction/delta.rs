@@ -49,8 +49,8 @@ pub struct Delta {
     /// D, `[output, input]` \[s\]; positive if the physics model leads, so that a delay must be
     /// added.
     pub delay_s: PairTable<Option<f64>>,
-    /// Band delay, `[output, input]` \[s\]: least-squares line through the origin, fitted to the
-    /// missing phase (M15.2).
+    /// Band delay, `[output, input]` \[s\]: slope of the line through the origin that fits `Delta
+    /// phi` over `omega` best, in least squares (M15.2).
     pub band_delay_s: PairTable<Option<f64>>,
 }
 
@@ -59,11 +59,11 @@ impl Delta {
     /// frequencies `omega` \[rad/s\].
     pub fn new(mismatch: &PairTable<Option<Mismatch>>, omega: &[f64]) -> Self {
         let phases = mismatch.map(|pair, _| {
-            let entry = mismatch[pair].as_ref()?;
-            Some(MissingPhase {
-                mismatch: entry,
-                phase: entry.phase_difference(omega),
-                omega: entry.omega(omega),
+            let mismatch = mismatch[pair].as_ref()?;
+            Some(PhaseDifference {
+                mismatch,
+                phase: mismatch.phase_difference(omega),
+                omega: mismatch.omega(omega),
             })
         });
         Self {
@@ -75,15 +75,15 @@ impl Delta {
 }
 
 /// Phase difference `Delta phi(H_sim, H_ref)` in a single response.
-struct MissingPhase<'a> {
+struct PhaseDifference<'a> {
     mismatch: &'a Mismatch,
     /// Phase \[rad\] at each frequency.
     phase: Vec<f64>,
-    /// Frequencies \[rad/s\].
+    /// The frequencies that count \[rad/s\].
     omega: &'a [f64],
 }
 
-impl MissingPhase<'_> {
+impl PhaseDifference<'_> {
     /// Computes D \[s\], eq. (9).
     fn median_delay_s(&self) -> f64 {
         self.mismatch.median(&mut delays(&self.phase, self.omega))

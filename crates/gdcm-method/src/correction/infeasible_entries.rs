@@ -36,9 +36,11 @@ pub(super) struct Misses {
 /// Finds the constrained entries whose delta was infeasible in stage 1, each with its conflict.
 ///
 /// ```text
-/// for each constrained entry whose target differs from its delta by more than the matching tolerance:
-/// 1  conflict: the one found for the entry; otherwise unclear, with all constrained entries
-/// 2  agreeing, if the conflict is a loop, and loop and entry deviate by at most the problem's tolerance; otherwise unmatched
+/// for each constrained entry whose target differs from its delta by more than the matching
+/// tolerance
+///     1  conflict: the one found for the entry; otherwise unclear, with all constrained entries
+///     2  agreeing, if the conflict is a loop, and loop and entry deviate by at most the problem's
+///        tolerance; otherwise unmatched
 /// ```
 pub(super) fn misses(
     problem: &Problem,
@@ -52,16 +54,18 @@ pub(super) fn misses(
         agreeing: Vec::new(),
         unmatched: Vec::new(),
     };
-    for (asked, target) in constraints.entries.iter().zip(&reached.targets) {
-        if (target.sum - asked.sum).abs() > tolerance {
+    for (prescribed, target) in constraints.entries.iter().zip(&reached.targets) {
+        if (target.sum - prescribed.sum).abs() > tolerance {
             // Step 1
-            let known = conflicts.iter().find(|found| found.missed == asked.pair);
+            let known = conflicts
+                .iter()
+                .find(|found| found.missed == prescribed.pair);
             let why = match known {
                 Some(found) => found.conflict.clone(),
                 None => unclear_conflict(problem, constraints),
             };
             // Step 2
-            let miss = unmatched(problem, asked, target, why);
+            let miss = unmatched(problem, prescribed, target, why);
             if miss.why.agrees_within(problem.agreement) && miss.excess.abs() <= problem.agreement {
                 misses.agreeing.push(miss);
             } else {
@@ -95,22 +99,22 @@ fn unclear_conflict(problem: &Problem, constraints: &Constraints) -> Conflict {
 /// Converts an infeasible entry from coordinates to gains or delays.
 fn unmatched(
     problem: &Problem,
-    asked: &ConstrainedSum,
+    prescribed: &ConstrainedSum,
     reached: &ConstrainedSum,
     why: Conflict,
 ) -> Unmatched {
     let quantity = problem.quantity;
     let coordinate = problem.coordinate();
-    let delta = coordinate.value(asked.sum);
+    let delta = coordinate.value(prescribed.sum);
     let target = coordinate.value(reached.sum);
     let excess = if quantity.is_gain() {
-        quantity.difference(reached.sum - asked.sum, coordinate)
+        quantity.difference(reached.sum - prescribed.sum, coordinate)
     } else {
         target - delta
     };
     Unmatched {
         quantity,
-        pair: asked.pair,
+        pair: prescribed.pair,
         delta,
         target,
         excess,

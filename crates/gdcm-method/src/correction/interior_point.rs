@@ -28,7 +28,7 @@ pub(crate) fn interior_point(objective: &Objective) -> Result<Vec<f64>, ProblemE
 }
 
 /// Solves `min s' P s / 2 + q' s` subject to `lower <= s <= upper` in the free scales; the other
-/// scales are fixed.
+/// scales are fixed. The box is written as `[I; -I] s <= [upper; -lower]`.
 fn solve_program(objective: &Objective, free: &[usize]) -> Result<Vec<f64>, ProblemError> {
     let scales = objective.scales();
     // Expand where the free scales are 0: the objective is quadratic, so that slope and Hessian
@@ -46,19 +46,25 @@ fn solve_program(objective: &Objective, free: &[usize]) -> Result<Vec<f64>, Prob
             .map(move |column| &hessian[row * scales + column])
     });
     let quadratic = CscMatrix::from(rows).to_triu();
-    let mut ends: Vec<f64> = free.iter().map(|&scale| objective.upper[scale]).collect();
-    ends.extend(free.iter().map(|&scale| -objective.lower[scale]));
+    let mut limits: Vec<f64> = free.iter().map(|&scale| objective.upper[scale]).collect();
+    limits.extend(free.iter().map(|&scale| -objective.lower[scale]));
     let settings = DefaultSettings {
         verbose: false,
         presolve_enable: false,
         ..DefaultSettings::default()
     };
-    convex_program(&quadratic, &slope, &box_sides(free.len()), &ends, settings)
-        .map_err(|reason| ProblemError::Program { reason })
+    convex_program(
+        &quadratic,
+        &slope,
+        &box_matrix(free.len()),
+        &limits,
+        settings,
+    )
+    .map_err(|reason| ProblemError::Program { reason })
 }
 
-/// Returns the matrix for the box constraints, `[I; -I]`, 2 size x size.
-fn box_sides(size: usize) -> CscMatrix<f64> {
+/// Returns the matrix of the box constraints, `[I; -I]`, 2 size x size.
+fn box_matrix(size: usize) -> CscMatrix<f64> {
     let columns = (0..=size).map(|column| 2 * column).collect();
     let mut rows = Vec::with_capacity(2 * size);
     let mut signs = Vec::with_capacity(2 * size);

@@ -14,10 +14,11 @@ use super::delta::band_delay_s;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LeadSettings {
     pub order: LeadOrder,
-    /// `n`: the lag time constant is `b = 1 / (n omega_B)`, where `omega_B` is the upper band edge.
+    /// `n`: pole frequency of the filters relative to the upper band edge `omega_B`; their lag time
+    /// constant is `b = 1 / (n omega_B)`.
     #[serde(rename = "n")]
     pub pole: f64,
-    /// `R_max`: maximum filter gain at high frequency (ratio, not dB).
+    /// `R_max`: limit on the filters' gain at high frequency (ratio, not dB).
     #[serde(rename = "r_max")]
     pub limit: f64,
 }
@@ -38,8 +39,10 @@ impl Default for LeadSettings {
 /// With `b = 1 / (n omega_B)` and the lead time `l >= 0`:
 ///
 /// ```text
-/// second order   L(s) = (1 + sqrt(2) a s + a^2 s^2) / (1 + sqrt(2) b s + b^2 s^2),   a = b + l / sqrt(2)
-/// first order    L(s) = (1 + a s) / (1 + b s),                                       a = b + l
+/// second order   L(s) = (1 + sqrt(2) a s + a^2 s^2) / (1 + sqrt(2) b s + b^2 s^2)
+///                a = b + l / sqrt(2)
+/// first order    L(s) = (1 + a s) / (1 + b s)
+///                a = b + l
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeadDesign {
@@ -142,10 +145,11 @@ impl LeadDesign {
     /// `l_max` for a `tau` below the lower bound, and 0 for one that is not negative.
     ///
     /// ```text
-    /// 1  low = 0, high = l_max;  l = tau / d'(0), at most l_max
-    /// 2  miss = d(l) - tau;  replace low or high by l according to the sign of the miss (d decreases)
+    /// 1  bracket: low = 0, high = l_max;  l = tau / d'(0), at most l_max
+    /// 2  miss = d(l) - tau;  replace low by l if it is positive (d decreases), otherwise high
     /// 3  l' = l - miss / d'(l);  if l' is not between low and high, use the midpoint
-    /// 4  l = l', repeat from 2, until l changes by less than a relative 1e-9 (the error is then about its square)
+    /// 4  l = l', repeat from 2, until l changes by less than a relative 1e-9
+    ///    (the error is then about its square)
     /// ```
     ///
     /// Newton's method within a bracket (Press et al., "Numerical Recipes", 3rd ed. 2007, 9.4).
@@ -154,15 +158,15 @@ impl LeadDesign {
         const STEPS: usize = 100;
         /// Relative change in `l` at which the iteration ends (step 4).
         const RELATIVE_CHANGE: f64 = 1e-9;
-        // Step 1
-        let mut low = 0.0;
-        let mut high = self.longest_lead_s();
         if tau_s >= 0.0 {
             return 0.0;
         }
         if tau_s <= self.lower_s {
-            return high;
+            return self.longest_lead_s();
         }
+        // Step 1
+        let mut low = 0.0;
+        let mut high = self.longest_lead_s();
         let mut lead_s = (-tau_s / self.band_delay_fall(0.0)).min(high);
         for _ in 0..STEPS {
             // Step 2

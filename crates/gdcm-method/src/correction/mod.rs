@@ -16,7 +16,7 @@
 //!     scaled_objective, branch_and_bound, alpha_limit  stage 2 and the proof
 //!     infeasible_entries, conflict_search, pull_flow,  explanation of infeasible entries
 //!         conflict
-//!     remedy                                           single changes that make all entries feasible
+//!     remedy                                           single changes that make all feasible
 //! sensitivity, multipliers, toggles                cost of each constrained entry
 //! lead_design, channel_leads, lead_price           lead filters for negative delays
 //! channel_correction                               the correction of a response

@@ -11,6 +11,10 @@
 //! The multiplier `lambda_e` is the minimum's derivative with respect to the entry's constrained
 //! sum, `mu_c` its derivative with respect to the active bound of channel `c`: at most 0 for an
 //! upper bound, at least 0 for a lower bound, and 0 without an active bound.
+//!
+//! A *piece* is a group of channels that constrained entries connect. Because the sums are fixed,
+//! its channels can only move together: if an input's `x` rises, each output's falls by as much,
+//! and each other input's rises.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -26,10 +30,11 @@ struct AtBounds {
     upper: bool,
 }
 
-/// The objective's slope along a piece's common movement ([`ConstrainedMinimum::sign`]).
+/// How the objective pushes a piece.
 pub(super) struct Push {
+    /// The objective's slope along the piece's movement, with rising inputs.
     pub(super) slope: f64,
-    /// Channels whose active bounds stop the movement.
+    /// Channels whose active bounds stop the piece from moving downhill.
     pub(super) stopping: Vec<usize>,
 }
 
@@ -67,7 +72,7 @@ impl ConstrainedMinimum {
         }
     }
 
-    /// Finds the pieces: groups of channels that constrained entries connect.
+    /// Finds the pieces.
     pub(super) fn pieces(&self) -> Vec<Vec<usize>> {
         let ties = self
             .constrained
@@ -76,13 +81,13 @@ impl ConstrainedMinimum {
         connected_pieces(self.slopes.len(), ties)
     }
 
-    /// Returns 1 for an input and -1 for an output: in a common movement, an output decreases when
-    /// the inputs connected with it increase, because the sums are constrained.
+    /// Returns by how much a channel's `x` changes if its piece moves by 1: 1 for an input, -1 for
+    /// an output.
     fn sign(&self, channel: usize) -> f64 {
         if channel < self.inputs { 1.0 } else { -1.0 }
     }
 
-    /// Computes the objective's slope along a piece's common movement.
+    /// Computes the objective's slope along a piece's movement, and the bounds that stop the piece.
     pub(super) fn push(&self, piece: &[usize]) -> Push {
         let slope: f64 = piece
             .iter()
@@ -113,15 +118,15 @@ impl Multipliers {
     /// Solves the conditions `dF/dx_c = mu_c + sum lambda_e` for the multipliers.
     ///
     /// ```text
-    /// 1  pieces: groups of channels that constrained entries connect
-    /// 2  for each piece: slope of F along its common movement;  mu_c <- the slope, divided equally
-    ///    among the channels whose bounds stop it;  0 for all others
+    /// 1  pieces
+    /// 2  for each piece: slope of F along its movement;  mu_c <- the slope, divided equally among
+    ///    the channels whose bounds stop the piece;  0 for all others
     /// 3  lambda <- least squares of  dF/dx - mu = (incidence matrix) lambda
     /// ```
     ///
-    /// The slope that pushes a piece against bounds is divided equally among the channels on these
-    /// bounds. The constrained entries' multipliers balance the remainder; in a loop, where they
-    /// are not unique, their sum of squares is minimal.
+    /// Step 2 is a choice: if several bounds stop a piece, only the sum of their multipliers is
+    /// determined. Step 3 is a choice, too, where entries form a loop: there, the multipliers with
+    /// the smallest sum of squares are taken.
     pub(super) fn new(minimum: &ConstrainedMinimum) -> Self {
         let mut channels = vec![0.0; minimum.slopes.len()];
         // Steps 1 and 2
@@ -144,11 +149,11 @@ fn entry_multipliers(minimum: &ConstrainedMinimum, bounds: &[f64]) -> Vec<f64> {
         return Vec::new();
     }
     let channels = bounds.len();
-    let balanced = DVector::from_fn(channels, |channel, _| {
+    let remaining_slopes = DVector::from_fn(channels, |channel, _| {
         minimum.slopes[channel] - bounds[channel]
     });
-    // Incidence matrix: 1 where an entry contains a channel.
-    let ties = DMatrix::from_fn(channels, minimum.constrained.len(), |channel, entry| {
+    // Channels x entries: 1 where an entry contains a channel.
+    let incidence = DMatrix::from_fn(channels, minimum.constrained.len(), |channel, entry| {
         let pair = minimum.constrained[entry];
         if channel == pair.input || channel == minimum.inputs + pair.output {
             1.0
@@ -160,7 +165,10 @@ fn entry_multipliers(minimum: &ConstrainedMinimum, bounds: &[f64]) -> Vec<f64> {
     // eigenvalues; with n channels these are 0, or at least 4 / n^2 (Mohar, "Eigenvalues, diameter
     // and mean distance in graphs", 1991). Half of `2 / n`, the lower bound on nonzero singular
     // values, separates them.
-    match ties.svd(true, true).solve(&balanced, 1.0 / channels as f64) {
+    match incidence
+        .svd(true, true)
+        .solve(&remaining_slopes, 1.0 / channels as f64)
+    {
         Ok(multipliers) => multipliers.iter().copied().collect(),
         Err(_) => Vec::new(),
     }

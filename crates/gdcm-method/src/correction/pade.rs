@@ -48,11 +48,15 @@ impl Pade {
 
     /// Creates the approximant's state-space model for a positive delay \[s\].
     ///
-    /// The ladder is `t = e_1' (L/z + S)^-1 e_1` with `L = diag(1, 3, 5, ...)`, the first unit vector
-    /// `e_1`, and `S` skew-symmetric with 1 directly above the diagonal and 0 elsewhere above it. Then
-    /// `(1 - t) / (1 + t) = 1 - 2 e_1' (L/z + R)^-1 e_1` with `R = S + e_1 e_1'`. With
-    /// `K = L^(-1/2) R L^(-1/2)` and `z = tau s / 2`, this is the state-space model
-    /// `A = -(2/tau) K^-1`, `B = 2/sqrt(tau) K^-1 e_1`, `C = 2/sqrt(tau) e_1' K^-1`, `D = (-1)^N`.
+    /// ```text
+    /// L = diag(1, 3, 5, ...), N x N;   e_1: first unit vector;   z = tau s / 2
+    /// S: 1 directly above the diagonal, -1 directly below it, otherwise 0
+    ///
+    /// 1  t = e_1' (L/z + S)^-1 e_1                              the continued fraction as a ladder
+    /// 2  (1 - t) / (1 + t) = 1 - 2 e_1' (L/z + R)^-1 e_1,       R = S + e_1 e_1'
+    /// 3  with K = L^(-1/2) R L^(-1/2), this is the state-space model
+    ///    A = -(2/tau) K^-1,  B = 2/sqrt(tau) K^-1 e_1,  C = 2/sqrt(tau) e_1' K^-1,  D = (-1)^N
+    /// ```
     pub fn model(self, delay_s: f64) -> ChannelModel {
         let gain = 2.0 / delay_s.sqrt();
         ChannelModel {
@@ -78,13 +82,15 @@ impl Pade {
 
     /// Returns an entry in `R^-1`, which is 1, 0 or -1.
     ///
-    /// `R x = b` has the rows `x_1 + x_2 = b_1`, `x_(k+1) - x_(k-1) = b_k` and `-x_(N-1) = b_N`
-    /// (counted from 1; `x_1 = b_1` for N = 1). Solved from the last row for `k` of the same parity
-    /// as N, then upwards from the first row:
+    /// Column `j` of `R^-1` is the solution `x` of `R x = b` for the unit vector `b = e_j`. With
+    /// indices counted from 1, and `k` of the same parity as N:
     ///
     /// ```text
-    /// x_(k-1) = -(b_k + b_(k+2) + ... + b_N)
-    /// x_k     = b_j summed over all j with the parity of N, plus b_j summed over j < k with the other parity
+    /// rows of R x = b   x_1 + x_2 = b_1;  x_(i+1) - x_(i-1) = b_i;  -x_(N-1) = b_N
+    ///                   (x_1 = b_1 for N = 1)
+    /// from the last row upwards     x_(k-1) = -(b_k + b_(k+2) + ... + b_N)
+    /// from the first row downwards  x_k = sum of b_j over all j with the parity of N
+    ///                                   + sum of b_j over all j < k with the other parity
     /// ```
     fn ladder_inverse(self, row: usize, column: usize) -> f64 {
         match (

@@ -24,6 +24,7 @@ const GAIN_BOUNDS: RangeInclusive<f64> = 1e-9..=1e9;
 /// stay clear of overflow.
 const MOST_DELAY_S: f64 = 1e50;
 
+/// Valid weights on the deviations from neutral.
 const ALPHAS: RangeInclusive<f64> = 0.0..=1e12;
 
 /// Deviation \[s\] up to which constrained delays in a loop are accepted as consistent: half a unit
@@ -34,12 +35,14 @@ pub const DELAY_AGREEMENT_S: f64 = 5e-5;
 /// correction.
 ///
 /// ```text
-/// min  sum w_oi (G_oi - k_o k_i)^2 + alpha sum (k_o - 1)^2         k_o k_i = G_oi (constrained)        (eq. 7)
-/// min  sum w_oi (D_oi - tau_o - tau_i)^2 + alpha sum tau_o^2       tau_o + tau_i = D_oi (constrained)  (eq. 11)
-/// M15.4: as eq. 11, with alpha (sum tau_o^2 + sum tau_i^2), and bounds that permit tau < 0
+/// eq. 7   min  sum w_oi (G_oi - k_o k_i)^2 + alpha sum (k_o - 1)^2
+///              subject to k_o k_i = G_oi in constrained entries
+/// eq. 11  min  sum w_oi (D_oi - tau_o - tau_i)^2 + alpha sum tau_o^2
+///              subject to tau_o + tau_i = D_oi in constrained entries
+/// M15.4   as eq. 11, with alpha (sum tau_o^2 + sum tau_i^2), and bounds that permit tau < 0
 /// ```
 ///
-/// subject to `lower <= k, tau <= upper` for every channel. The weight `w_oi` is 1 for a fitted
+/// and subject to `lower <= k, tau <= upper` for every channel. The weight `w_oi` is 1 for a fitted
 /// entry and 0 for an ignored one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {

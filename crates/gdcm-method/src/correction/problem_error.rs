@@ -13,7 +13,8 @@ use super::quantity::Quantity;
 pub enum ProblemError {
     /// A table differs in shape from the delta table.
     #[error(
-        "the table of {table} entries has {} outputs and {} inputs, but the {quantity}s have {} and {}",
+        "the table of {table} entries has {} outputs and {} inputs, but the {quantity}s have {} \
+        and {}",
         found.0,
         found.1,
         expected.0,
@@ -28,17 +29,31 @@ pub enum ProblemError {
         expected: (usize, usize),
     },
     /// A constrained entry has no delta.
-    #[error("the response of output {} to input {} has no delta {quantity}, so its {quantity} cannot be held", pair.output + 1, pair.input + 1)]
+    #[error(
+        "the response of output {} to input {} has no delta {quantity}, so its {quantity} cannot \
+        be held",
+        pair.output + 1,
+        pair.input + 1
+    )]
     ConstrainedUndefined { quantity: Quantity, pair: Pair },
     /// A delta gain is not a number from 1e-50 to 1e50.
-    #[error("the delta gain of output {} and input {} is {gain}; it must be from 1e-50 to 1e50", pair.output + 1, pair.input + 1)]
+    #[error(
+        "the delta gain of output {} and input {} is {gain}; it must be from 1e-50 to 1e50",
+        pair.output + 1,
+        pair.input + 1
+    )]
     Gain {
         pair: Pair,
         /// Delta gain; a ratio, not in dB.
         gain: f64,
     },
     /// A delta delay is not finite, or too large.
-    #[error("the delta delay of output {} and input {} is {delay_s} s; it must be a number below 1e50 s", pair.output + 1, pair.input + 1)]
+    #[error(
+        "the delta delay of output {} and input {} is {delay_s} s; it must be a number below \
+        1e50 s",
+        pair.output + 1,
+        pair.input + 1
+    )]
     Delay { pair: Pair, delay_s: f64 },
     /// The bounds are invalid for the quantity, see [`Bounds`].
     #[error("{}", bounds_error(*quantity, *bounds))]
@@ -76,14 +91,16 @@ fn bounds_error(quantity: Quantity, bounds: Bounds) -> String {
     let Bounds { lower, upper } = bounds;
     match quantity {
         Quantity::Gain(_) => format!(
-            "the gain bounds {lower} and {upper} must be from 1e-9 to 1e9, and the lower bound not above the upper bound"
+            "the gain bounds {lower} and {upper} must be from 1e-9 to 1e9, and the lower bound not \
+            above the upper bound"
         ),
         Quantity::Delay => format!(
-            "the delay bounds are {lower} s and {upper} s; the lower bound must be 0, the upper bound from 0 to 1e50 s"
+            "the delay bounds are {lower} s and {upper} s; the lower bound must be 0, the upper \
+            bound from 0 to 1e50 s"
         ),
         Quantity::SignedDelay => format!(
-            "the signed delay bounds are {lower} s and {upper} s; the lower bound must be from -1e50 to 0 s, the upper bound \
-             from 0 to 1e50 s"
+            "the signed delay bounds are {lower} s and {upper} s; the lower bound must be from \
+            -1e50 to 0 s, the upper bound from 0 to 1e50 s"
         ),
     }
 }

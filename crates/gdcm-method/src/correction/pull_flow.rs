@@ -72,35 +72,35 @@ impl Flow {
     /// Collects the entries missed at `point`, the result of stage 1.
     pub(super) fn new(constraints: &Constraints, reached: &Reached, point: &[f64]) -> Self {
         let mut pulls = Vec::new();
-        // Net pull on each node: negative downwards, positive upwards.
-        let mut net = vec![0.0; constraints.nodes()];
-        for (asked, target) in constraints.entries.iter().zip(&reached.targets) {
-            let missing = asked.sum - target.sum;
-            if missing.abs() <= RESIDUAL_ROUNDING * (1.0 + asked.sum.abs()) {
+        // Sum of the pulls on each node: negative downwards, positive upwards.
+        let mut net_pulls = vec![0.0; constraints.nodes()];
+        for (prescribed, target) in constraints.entries.iter().zip(&reached.targets) {
+            let missing = prescribed.sum - target.sum;
+            if missing.abs() <= RESIDUAL_ROUNDING * (1.0 + prescribed.sum.abs()) {
                 continue;
             }
-            let PairNodes { input, output } = constraints.nodes_of(asked.pair);
+            let PairNodes { input, output } = constraints.nodes_of(prescribed.pair);
             let upwards = Pull {
                 from: output,
                 to: input,
-                weight: asked.sum,
-                pair: asked.pair,
+                weight: prescribed.sum,
+                pair: prescribed.pair,
             };
             let pull = if missing > 0.0 {
                 upwards
             } else {
                 upwards.reversed()
             };
-            net[pull.from] -= missing.abs();
-            net[pull.to] += missing.abs();
+            net_pulls[pull.from] -= missing.abs();
+            net_pulls[pull.to] += missing.abs();
             pulls.push(pull);
         }
         let mut at_lower = Vec::new();
         let mut at_upper = Vec::new();
-        for (node, &net) in net.iter().enumerate() {
+        for (node, &net_pull) in net_pulls.iter().enumerate() {
             let range = constraints.node_range(node);
-            at_lower.push(point[node] <= range.low && net < 0.0);
-            at_upper.push(point[node] >= range.high && net > 0.0);
+            at_lower.push(point[node] <= range.low && net_pull < 0.0);
+            at_upper.push(point[node] >= range.high && net_pull > 0.0);
         }
         Self {
             pulls,
@@ -109,10 +109,13 @@ impl Flow {
         }
     }
 
-    /// Returns the shortest way along the flow that leads from the end of `pull` back to its start;
-    /// `None` if there is none.
-    pub(super) fn way_back(&self, pull: &Pull) -> Option<Vec<Pull>> {
-        self.shortest_walk(pull.to, Direction::Along, |node| node == pull.from)
+    /// Returns the shortest loop through `pull`: the pull, and the shortest way along the flow from
+    /// its end back to its start; `None` if there is none.
+    pub(super) fn loop_through(&self, pull: &Pull) -> Option<Vec<Pull>> {
+        let way_back = self.shortest_walk(pull.to, Direction::Along, |node| node == pull.from)?;
+        let mut around = vec![*pull];
+        around.extend(way_back);
+        Some(around)
     }
 
     /// Returns the shortest path from a node at its lower bound through `pull` to a node at its

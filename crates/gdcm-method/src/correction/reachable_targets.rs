@@ -1,13 +1,14 @@
 //! Stage 1: the feasible sums nearest to the constrained entries' prescribed sums (M8, M9).
 //!
 //! ```text
-//! min sum (x_i + y_o - sum_oi)^2     over the constrained entries of infeasible components, subject to the box
+//! min sum (x_i + y_o - sum_oi)^2     subject to the box
 //! ```
 //!
-//! `x_i` and `y_o` are the coordinates (logarithms of gains, or delays) of input `i` and output
-//! `o`; `sum_oi` is prescribed for the response of `o` to `i` ([`super::constraints`]). A
-//! *component* is a group of channels that constrained entries connect; it is infeasible if its
-//! entries contradict each other or the box.
+//! The sum is over the constrained entries of infeasible components. `x_i` and `y_o` are the
+//! coordinates (logarithms of gains, or delays) of input `i` and output `o`; `sum_oi` is prescribed
+//! for the response of `o` to `i` ([`super::constraints`]). A *component* is a group of channels
+//! that constrained entries connect; it is infeasible if its entries contradict each other or the
+//! box.
 
 use super::branch_and_bound::objective::Objective;
 use super::branch_and_bound::rounded::Rounded;
@@ -43,20 +44,20 @@ pub(crate) fn reach<E>(
     minimise: impl FnOnce(&Objective) -> Result<Vec<f64>, E>,
 ) -> Result<Reached, E> {
     // Step 1
-    let asked = Components::new(constraints);
-    if asked.are_possible() {
+    let prescribed = Components::new(constraints);
+    if prescribed.are_possible() {
         return Ok(Reached {
             targets: constraints.entries.clone(),
-            components: asked,
+            components: prescribed,
             point: None,
         });
     }
     // Step 2
-    let point = minimise(&nearest_sums(constraints, &asked))?;
+    let point = minimise(&nearest_sums(constraints, &prescribed))?;
     // Step 3
     let mut targets = constraints.entries.clone();
     for target in &mut targets {
-        if asked.is_infeasible(target.pair) {
+        if prescribed.is_infeasible(target.pair) {
             let nodes = constraints.nodes_of(target.pair);
             target.sum = point[nodes.input] - point[nodes.output];
         }
@@ -72,7 +73,7 @@ pub(crate) fn reach<E>(
 
 /// Builds stage 1's least-squares problem for the infeasible components. Its variables, scales in
 /// [`Objective`], are the node values, followed by the ground.
-fn nearest_sums(constraints: &Constraints, asked: &Components) -> Objective {
+fn nearest_sums(constraints: &Constraints, prescribed: &Components) -> Objective {
     let mut lower = Vec::new();
     let mut upper = Vec::new();
     for node in 0..constraints.nodes() {
@@ -84,7 +85,7 @@ fn nearest_sums(constraints: &Constraints, asked: &Components) -> Objective {
     upper.push(0.0);
     let mut terms = Vec::new();
     for entry in &constraints.entries {
-        if asked.is_infeasible(entry.pair) {
+        if prescribed.is_infeasible(entry.pair) {
             let nodes = constraints.nodes_of(entry.pair);
             let centre = Rounded {
                 value: entry.sum,

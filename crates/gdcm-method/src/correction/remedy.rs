@@ -30,7 +30,7 @@ pub struct Remedy {
     /// Maximum sufficient lower bound if the upper bound is unchanged, rounded down to three
     /// digits; `None` if no lower bound suffices, and for delays, whose lower bound is fixed.
     pub lower: Option<f64>,
-    /// Constrained entries whose release alone is sufficient.
+    /// Constrained entries to free: releasing any one of them alone is sufficient.
     pub free: Vec<Pair>,
 }
 
@@ -40,8 +40,8 @@ impl Remedy {
     ///
     /// ```text
     /// 1  free: each entry of a conflict without which all others are feasible
-    /// 2  upper, lower: the end of the range that suffices with the other end unchanged (`SufficientRange`);
-    ///    none if a loop is inconsistent, or if both ends would have to move
+    /// 2  upper, lower: the end of the range that suffices with the other end unchanged
+    ///    (`SufficientRange`); none if a loop is inconsistent, or if both ends would have to move
     /// 3  rounded outwards to three digits, and never narrower than the present bounds
     /// ```
     pub(crate) fn new(
@@ -95,7 +95,8 @@ fn sufficient_releases(
         .collect();
     let mut sufficient = Vec::new();
     for pair in suspects {
-        // Work: `Components::new` places each channel by a walk along the constrained entries.
+        // Work: `Components::new` examines up to every entry at every channel, which counts as an
+        // eighth of a term evaluation.
         effort.spend((constraints.nodes() * constraints.entries.len()) as u64 / 8);
         effort.check()?;
         let mut others = constraints.entries.clone();
@@ -114,10 +115,13 @@ fn sufficient_releases(
 /// only if
 ///
 /// ```text
-/// high - low  >=  max a - min a,  max b - min b          (width)
-/// low   <=  (min a - max b) / 2                          (lowest pair: sum of a low input and a low output)
-/// high  >=  (max a - min b) / 2                          (highest pair)
+/// high - low  >=  max a - min a,  max b - min b     (width)
+/// low         <=  (min a - max b) / 2               (lowest pair: lowest input and lowest output)
+/// high        >=  (max a - min b) / 2               (highest pair)
 /// ```
+///
+/// The sum over a pair, such as `min a - max b`, does not depend on `s`; half of it is the mean of
+/// the pair's two coordinates, which must be in the range.
 #[derive(Default)]
 struct SufficientRange {
     /// Maximum sufficient lower end.

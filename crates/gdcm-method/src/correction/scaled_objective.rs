@@ -57,8 +57,22 @@ pub(crate) fn scaled_objective(problem: &Problem, components: &Components) -> Ob
     }
 }
 
+/// A summand of the objective: a fitted entry, or a channel's deviation from neutral.
+struct ScaledEntry {
+    /// Index of the output's scale; the ground, if the entry is an input's deviation from neutral.
+    output: usize,
+    /// Index of the input's scale; the ground, if the entry is an output's deviation from neutral.
+    input: usize,
+    /// `w`, or `alpha`.
+    weight: f64,
+    /// Delta gain, delta delay \[s\] or neutral value.
+    delta: f64,
+    /// Coordinate of the net value if both scales are 0.
+    offset: Rounded,
+}
+
 /// Lists the fitted entries, each with its two components' scales.
-fn fit_entries(problem: &Problem, components: &Components) -> Vec<SquareEntry> {
+fn fit_entries(problem: &Problem, components: &Components) -> Vec<ScaledEntry> {
     let nodes = components.nodes();
     let mut entries = Vec::new();
     for Entry { pair, delta } in problem.fit_entries() {
@@ -66,7 +80,7 @@ fn fit_entries(problem: &Problem, components: &Components) -> Vec<SquareEntry> {
         let input = nodes.inputs[pair.input];
         let mut offset = -output.offset;
         offset.add(input.offset);
-        entries.push(SquareEntry {
+        entries.push(ScaledEntry {
             output: output.component,
             input: input.component,
             weight: 1.0,
@@ -79,13 +93,13 @@ fn fit_entries(problem: &Problem, components: &Components) -> Vec<SquareEntry> {
 
 /// Lists the channels' regularised deviations from neutral, each as an entry whose other scale is
 /// the ground.
-fn departures(problem: &Problem, components: &Components) -> Vec<SquareEntry> {
+fn departures(problem: &Problem, components: &Components) -> Vec<ScaledEntry> {
     let ground = components.count();
     let delta = problem.quantity.neutral();
     let nodes = components.nodes();
     let mut entries = Vec::new();
     for output in nodes.outputs {
-        entries.push(SquareEntry {
+        entries.push(ScaledEntry {
             output: output.component,
             input: ground,
             weight: problem.alpha,
@@ -95,7 +109,7 @@ fn departures(problem: &Problem, components: &Components) -> Vec<SquareEntry> {
     }
     if problem.quantity.regularises_inputs() {
         for input in nodes.inputs {
-            entries.push(SquareEntry {
+            entries.push(ScaledEntry {
                 output: ground,
                 input: input.component,
                 weight: problem.alpha,
@@ -107,14 +121,17 @@ fn departures(problem: &Problem, components: &Components) -> Vec<SquareEntry> {
     entries
 }
 
-/// Converts the targets to coordinates, and multiplies the weights by `factor`.
-fn in_coordinate(entries: &[SquareEntry], coordinate: Coordinate, factor: f64) -> Vec<SquareEntry> {
+/// Converts the deltas to coordinates, which are the targets, and multiplies the weights by
+/// `factor`: the unit of a squared residual per squared coordinate.
+fn in_coordinate(entries: &[ScaledEntry], coordinate: Coordinate, factor: f64) -> Vec<SquareEntry> {
     entries
         .iter()
         .map(|entry| SquareEntry {
+            output: entry.output,
+            input: entry.input,
             weight: factor * entry.weight,
-            delta: coordinate.transform(entry.delta),
-            ..*entry
+            target: coordinate.transform(entry.delta),
+            offset: entry.offset,
         })
         .collect()
 }
@@ -122,7 +139,7 @@ fn in_coordinate(entries: &[SquareEntry], coordinate: Coordinate, factor: f64) -
 /// Combines entries compared as ratios into one term for each pair of scales that share an entry, a
 /// function of `u = s_to - s_from` with `from < to`. Its `forward` part contains the entries whose
 /// input is in component `to`, its `backward` part those whose input is in `from`.
-fn ratio_terms(entries: &[SquareEntry], scales: usize) -> TermSum {
+fn ratio_terms(entries: &[ScaledEntry], scales: usize) -> TermSum {
     // The entries with these output and input scales are at `output * scales + input`.
     let mut groups: Vec<Vec<ProductEntry>> = vec![Vec::new(); scales * scales];
     let mut constant = Rounded::default();
@@ -156,8 +173,8 @@ fn ratio_terms(entries: &[SquareEntry], scales: usize) -> TermSum {
 
 /// Returns the objective's rounding level, in the problem's coordinate.
 ///
-/// It is 1e-9 times the summed squares of the fitted deltas, plus `1e-20 alpha` per output, and never
-/// zero.
+/// It is 1e-9 times the summed squares of the fitted deltas, plus `1e-20 alpha` per output, and
+/// never zero.
 pub(crate) fn rounding_floor(problem: &Problem) -> f64 {
     let coordinate = problem.coordinate();
     let delta_squares: f64 = problem

@@ -39,6 +39,7 @@ impl Sensitivity {
     /// 0.01, … for which the linear extrapolation changes the objective by at most half; the
     /// objective cannot fall below zero.
     pub fn step(&self) -> f64 {
+        /// Maximum change, relative to the objective.
         const MOST_SHARE: f64 = 0.5;
         /// Maximum count of divisions by ten: the minimum step is a nanosecond, or 1e-6 dB.
         const MOST_POWERS: i32 = 6;

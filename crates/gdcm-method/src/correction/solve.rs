@@ -32,7 +32,8 @@ use super::solution::{LocalMinimum, Outcome, Proof, Solution};
 /// 2  objective over the scales that the constrained sums leave free (M8, proof)
 /// 3  global minimum by branch and bound (stage 2)
 /// 4  limit alpha -> 0+ for floating pieces (`alpha_limit`)
-/// 5  for each infeasible delta of stage 1: its conflict, and the single changes that would resolve all conflicts
+/// 5  for each infeasible delta of stage 1: its conflict; and the single changes that would resolve
+///    all conflicts
 /// ```
 ///
 /// Entries that the bounds or their own loops make infeasible are constrained to the nearest

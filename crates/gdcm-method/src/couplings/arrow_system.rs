@@ -2,14 +2,18 @@
 //!
 //! The unknowns are the entries `M_ji` of the input mixing and `K_jo` of the output feedback. An
 //! `M_ji` appears only in the equations for input i, a `K_jo` in the equations for every input. The
-//! normal matrix therefore has a block for each input, and a border for K. The contributions to K
-//! are summed over the inputs before the substitution:
+//! normal matrix therefore has a block row for each input, that is, for each column of M, and a
+//! border for K:
 //!
 //! ```text
-//! [ A_1            B_1 ]   [ M_1 ]   [ b_1 ]        1  A_i = L_i L_i^T,  W_i = L_i^-1 B_i,  y_i = L_i^-1 b_i  for every input i
-//! [      ...       ... ] . [ ... ] = [ ... ]        2  (C - sum W_i^T W_i) K = b_K - sum W_i^T y_i,  by Cholesky factors
-//! [            A_m B_m ]   [ M_m ]   [ b_m ]        3  M_i = L_i^-T (y_i - W_i K)
+//! [ A_1            B_1 ]   [ M_1 ]   [ b_1 ]
+//! [      ...       ... ] . [ ... ] = [ ... ]      M_i: unknowns in column i of M
+//! [            A_m B_m ]   [ M_m ]   [ b_m ]      K:   unknowns in K
 //! [ B_1^T ... B_m^T C  ]   [ K   ]   [ b_K ]
+//!
+//! 1  for every input i: A_i = L_i L_i^T (Cholesky),  W_i = L_i^-1 B_i,  y_i = L_i^-1 b_i
+//! 2  (C - sum W_i^T W_i) K = b_K - sum W_i^T y_i, by Cholesky factors
+//! 3  for every input i: M_i = L_i^-T (y_i - W_i K)
 //! ```
 //!
 //! Block Cholesky factorisation: Golub & Van Loan, "Matrix Computations", 4th ed. 2013, 4.2.9.
@@ -18,7 +22,7 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 /// Normal equations with an arrow matrix.
 pub(super) struct ArrowSystem {
-    /// Block rows, one for each input.
+    /// A block row for each column of M.
     pub(super) columns: Vec<ArrowColumn>,
     /// Corner block `C`.
     pub(super) corner: DMatrix<f64>,
@@ -26,7 +30,7 @@ pub(super) struct ArrowSystem {
     pub(super) right: DVector<f64>,
 }
 
-/// Block row for M's unknowns in one input column.
+/// Block row for the unknowns in one column of M.
 pub(super) struct ArrowColumn {
     /// Diagonal block `A_i`.
     pub(super) block: DMatrix<f64>,
@@ -38,13 +42,13 @@ pub(super) struct ArrowColumn {
 
 /// The values that solve the normal equations.
 pub(super) struct ArrowSolution {
-    /// Unknowns in M, per input column.
+    /// Unknowns in each column of M.
     pub(super) mixing: Vec<DVector<f64>>,
     /// Unknowns in K.
     pub(super) feedback: DVector<f64>,
 }
 
-/// An input column after its elimination from the equations for K (step 1).
+/// A column of M after its elimination from the equations for K (step 1).
 struct EliminatedColumn {
     /// Cholesky factor `L_i`.
     factors: Cholesky<f64, Dyn>,
@@ -112,7 +116,7 @@ impl EliminatedColumn {
         })
     }
 
-    /// Solves for M's unknowns in this column, given those in K (step 3).
+    /// Solves for the unknowns in this column of M, given those in K (step 3).
     fn substitute(&self, feedback: &DVector<f64>) -> Option<DVector<f64>> {
         let right = &self.right - &self.border * feedback;
         self.factors.l_dirty().tr_solve_lower_triangular(&right)

@@ -1,15 +1,20 @@
 //! Closes the output-to-input loop around a response, frequency by frequency (M16.3).
 //!
 //! ```text
-//! F = (I - H K)^-1 H = H (I - K H)^-1: the m x m inverse is used, H p x m, K m x p
+//! F = (I - H K)^-1 H = H (I - K H)^-1      H p x m, K m x p; the m x m inverse is used
+//!
 //! 1  T <- I - K H
-//! 2  for each row j of T: swap the column k >= j with the largest |T_jk| with column j; from the columns k > j subtract the multiple
-//!       of column j that makes T_jk zero; swap and reduce the columns of H in the same way
-//! 3  for each column j of H from the last: divide it by T_jj; from the columns k < j subtract T_jk times column j
+//! 2  for each row j of T:
+//!        pivot: swap column j with the column k >= j that has the largest |T_jk|
+//!        from the columns k > j subtract the multiple of column j that makes T_jk zero
+//!        swap and reduce the columns of H in the same way
+//! 3  for each column j of H, from the last:
+//!        divide it by T_jj; from the columns k < j of H subtract T_jk times column j
 //! ```
 //!
-//! `H` is the physics model's response, `K` the feedback from its outputs to its inputs. Both
-//! matrices are stored column by column: `T_jk` is at `k m + j`, `H_ok` at `k p + o`.
+//! `H` is the physics model's response, `K` the feedback from its outputs to its inputs; at the end
+//! `F` has replaced `H`. Both matrices are stored column by column: `T_jk` is at `k m + j`, `H_ok`
+//! at `k p + o`.
 //!
 //! Gaussian elimination with partial pivoting, by columns: Golub & Van Loan, "Matrix Computations",
 //! 4th ed. 2013, 3.4.
@@ -22,7 +27,7 @@ pub(super) struct ClosedLoop<'a> {
     feedback: &'a DMatrix<f64>,
     /// Whether `K` is zero, so that `F = H`.
     is_open: bool,
-    /// `T`, m x m, column by column.
+    /// Return difference `T`, m x m, column by column.
     difference: Vec<Complex<f64>>,
 }
 

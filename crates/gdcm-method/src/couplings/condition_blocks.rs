@@ -14,16 +14,19 @@
 //! from the previous pass; `q` is a response's weight (`weighted_condition`).
 //!
 //! In input column i, the unknowns `M_ji` and `K_jo` multiply the column `F[:,j]` times 1 and times
-//! `R'_oi`. With these factors as `t`, the entries in `G` and `b` are sums over the frequencies:
+//! `R'_oi`. With these factors as `t`, the entries in `G` and `b` are sums over the frequencies,
+//! which are processed in chunks:
 //!
 //! ```text
-//! for each frequency:
-//! 1  F <- (I - H K_0)^-1 H
+//! 1  for each frequency in the chunk:
+//!        F <- (I - H K_0)^-1 H,   S = I + F K_0
 //!    for each input column i:
-//! 2     q^2 <- weights of column i, which depend on column i of F M_0
-//! 3     t   <- (1, R'_oi for every fed-back output o)
-//! 4     z   <- F^H q^2 (S R')[:,i],   S R' = R' + F K_0 R'  because  S = I + F K_0
-//! 5     G[(a, j), (b, l)] += Re conj(t_a) t_b P_jl,   P = F^H q^2 F, m x m;   b[(a, j)] += Re conj(t_a) z_j
+//!        for each frequency in the chunk:
+//! 2          q^2 <- weights of column i, which depend on column i of F M_0
+//! 3          t   <- (1, R'_oi for every fed-back output o)
+//! 4          z   <- F^H q^2 (S R')[:,i],   S R' = R' + F K_0 R'
+//! 5          b[(a, j)] += Re conj(t_a) z_j
+//! 6      G[(a, j), (b, l)] += sum over the chunk of Re conj(t_a) t_b P_jl,   P = F^H q^2 F
 //! ```
 //!
 //! The index pair `(a, j)` means the unknown with the column `t_a F[:,j]`: `M_ji` for a = 0, and
@@ -53,7 +56,8 @@ pub(super) struct ConditionBlocks {
 /// Entries in `G` and `b` for M's unknowns in one input column.
 #[derive(Clone)]
 pub(super) struct ColumnBlocks {
-    /// One row for each product `t_0 t_b`, where `t_0 = 1`.
+    /// One row for each factor pair `t_0 t_b`, where `t_0 = 1`: M's unknowns with one another
+    /// (b = 0), and with those in K.
     products: PairProducts,
     /// Entries in `b`, one for each input j.
     pub(super) right: DVector<f64>,
@@ -91,7 +95,7 @@ impl ConditionBlocks {
             if progress.cancelled() {
                 return Err(CouplingError::Cancelled(Cancelled));
             }
-            // Step 1.
+            // Step 1
             let mut closed = Vec::with_capacity(frequencies.len());
             for &k in frequencies {
                 closed.push(ClosedResponse::new(condition, k, &mut closed_loop)?);
@@ -99,13 +103,14 @@ impl ConditionBlocks {
             for input in 0..inputs {
                 chunk.clear();
                 for response in &closed {
-                    // Steps 2 to 4.
+                    // Steps 2 to 4
                     if terms.set(condition, response, &last, input) {
                         chunk.push(&terms.factors, &response.rows, &terms.squared_weights);
+                        // Step 5
                         blocks.add_right(&terms, input);
                     }
                 }
-                // Step 5, for all frequencies in the chunk at once.
+                // Step 6
                 blocks.columns[input].products.add_pairs_with_first(&chunk);
                 blocks.feedback.add_pairs_without_first(&chunk);
             }
@@ -196,13 +201,13 @@ impl ClosedResponse {
 
 /// Terms for an input column at one frequency; the memory is reused.
 struct ColumnTerms {
-    /// Input column in `F M_0`, p values.
+    /// Column of `F M_0`, p values.
     coupled: Vec<Complex<f64>>,
     /// `q^2` for each output.
     squared_weights: Vec<f64>,
     /// `t`: 1, then each fed-back output's flight response.
     factors: Vec<Complex<f64>>,
-    /// Input column in `S R'`, p values.
+    /// Column of `S R'`, p values.
     target: Vec<Complex<f64>>,
     /// `z = F^H q^2 (S R')[:,i]`, m values.
     projection: Vec<Complex<f64>>,
@@ -221,7 +226,7 @@ impl ColumnTerms {
     }
 
     /// Computes the terms for column `input` (steps 2 to 4). Returns `false`, without valid terms,
-    /// if every weight is zero.
+    /// if every weight is zero; the frequency then does not count in this column.
     fn set(
         &mut self,
         condition: &WeightedCondition<'_>,
@@ -230,13 +235,16 @@ impl ColumnTerms {
         input: usize,
     ) -> bool {
         let flight = condition.flight(closed.k, input);
+        // Step 2
         set_coupled(&mut self.coupled, &closed.columns, last, input);
         let counts =
             condition.squared_weights(closed.k, input, &self.coupled, &mut self.squared_weights);
         if !counts {
             return false;
         }
+        // Step 3
         set_factors(&mut self.factors, flight, last.fed_back);
+        // Step 4
         set_target(&mut self.target, &closed.columns, flight, last);
         set_projection(
             &mut self.projection,

@@ -132,14 +132,15 @@ impl CouplingMatrices {
         let mixing = self.normalised_mixing(airspeed_kt);
         let mut closed_loop = ClosedLoop::new(&self.feedback);
         let mut coupled = physics.curves().clone();
-        let mut f = vec![Complex::new(0.0, 0.0); inputs * outputs];
+        // `H`, then `(I - H K)^-1 H`, at a frequency, column by column.
+        let mut closed = vec![Complex::new(0.0, 0.0); inputs * outputs];
         for k in 0..physics.curve(Pair::new(0, 0)).len() {
-            let lacking = self.read_columns(physics, k, &mut f);
-            let is_closed = closed_loop.close(&mut f);
+            let lacking = self.read_columns(physics, k, &mut closed);
+            let is_closed = closed_loop.close(&mut closed);
             for (pair, curve) in coupled.iter_mut() {
                 curve[k] = if is_closed && !lacking.contains(&pair.output) {
                     (0..inputs)
-                        .map(|to| f[to * outputs + pair.output] * mixing[(to, pair.input)])
+                        .map(|to| closed[to * outputs + pair.output] * mixing[(to, pair.input)])
                         .sum()
                 } else {
                     Complex::new(f64::NAN, f64::NAN)
@@ -149,8 +150,9 @@ impl CouplingMatrices {
         FrequencyResponse::new(coupled)
     }
 
-    /// Writes `H` at frequency index `k` to `columns`. Returns the outputs that lack a response and
-    /// are not fed back; their values are set to zero, which does not affect the other outputs.
+    /// Writes `H` at frequency index `k` to `columns`, column by column. Returns the outputs that
+    /// lack a response and are not fed back; their values are set to zero, which does not affect
+    /// the other outputs.
     fn read_columns(
         &self,
         physics: &FrequencyResponse,

@@ -176,7 +176,7 @@ impl ArrayReader<'_> {
         let places = self.places(stored)?;
         let mut numbers = Vec::with_capacity(places.len());
         for (at, place) in places.enumerate() {
-            self.budget.go_on(at)?;
+            self.budget.check_stop(at)?;
             let bytes = stored.bytes_at(place).get(offset..).unwrap_or_default();
             numbers.push(number.decode(bytes));
         }
@@ -194,7 +194,7 @@ impl ArrayReader<'_> {
         self.budget.take(places.len() as u64, size, self.name)?;
         let mut texts = Vec::new();
         for (at, place) in places.enumerate() {
-            self.budget.go_on(at)?;
+            self.budget.check_stop(at)?;
             texts.push(decode(stored.bytes_at(place)));
         }
         Ok(texts)

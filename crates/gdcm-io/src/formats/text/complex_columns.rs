@@ -6,7 +6,7 @@
 use crate::formats::text::cell_number::{cell_number, has_number};
 use crate::formats::text::lines::{comment, lines};
 use crate::formats::text::separator::Separator;
-use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::reading_budget::{NO_VARIABLE, ReadingBudget, VariableFault};
 
 /// Whether the decimal mark may be a comma; it is always a point in tables with complex numbers.
 const DECIMAL_COMMA: bool = false;
@@ -22,10 +22,10 @@ pub fn split_complex(text: &str, budget: &ReadingBudget) -> Result<Option<String
     let Some(columns) = ComplexColumns::recognise(text) else {
         return Ok(None);
     };
-    budget.take(text.len() as u64, GROWTH, "")?;
+    budget.take(text.len() as u64, GROWTH, NO_VARIABLE)?;
     let mut split = String::with_capacity(2 * text.len());
     for (_, line) in lines(text) {
-        budget.work(1, "")?;
+        budget.work(1, NO_VARIABLE)?;
         // The heading may be in a comment, whose mark is then omitted.
         match columns.split_line(comment(line).unwrap_or(line)) {
             Some(line) => split.push_str(&line),
@@ -111,9 +111,11 @@ impl ComplexColumns {
         }
         let cell = cell.trim();
         match cell_number(cell, DECIMAL_COMMA) {
+            // A missing number has neither part.
             Some(number) if number.is_nan() => PartCells::new(cell, cell),
             Some(_) => PartCells::new(cell, "0"),
             None => {
+                // A blank would split the heading if blanks separate the cells.
                 let joint = if self.separator == Separator::Blanks {
                     "_"
                 } else {

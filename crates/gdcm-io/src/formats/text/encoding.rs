@@ -1,6 +1,6 @@
 //! Character encodings for text files.
 
-use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::reading_budget::{NO_VARIABLE, ReadingBudget, VariableFault};
 use crate::variable_fault::found_content::FoundContent;
 
 /// Characters 0x80 to 0x9f of code page 1252; its five undefined codes become control characters.
@@ -27,7 +27,7 @@ pub fn decode(bytes: &[u8], budget: &ReadingBudget) -> Result<String, VariableFa
         return Err(no_text("a text", at));
     }
     // A code page 1252 character needs at most three bytes in UTF-8.
-    budget.take(body.len() as u64, 3, "")?;
+    budget.take(body.len() as u64, 3, NO_VARIABLE)?;
     Ok(match std::str::from_utf8(body) {
         Ok(text) => text.to_owned(),
         Err(_) => body.iter().map(|&byte| windows_1252(byte)).collect(),
@@ -50,9 +50,10 @@ fn utf16(
 ) -> Result<String, VariableFault> {
     let (pairs, rest) = body.as_chunks::<2>();
     if !rest.is_empty() {
-        return Err(VariableFault::cut_off("", body.len() + 2));
+        return Err(VariableFault::cut_off(NO_VARIABLE, body.len() + 2));
     }
-    budget.take(pairs.len() as u64, 4, "")?;
+    // An upper bound: a UTF-16 word needs at most three bytes in UTF-8.
+    budget.take(pairs.len() as u64, 4, NO_VARIABLE)?;
     let decoded = char::decode_utf16(pairs.iter().map(|&pair| word(pair)));
     Ok(decoded
         .map(|character| character.unwrap_or(char::REPLACEMENT_CHARACTER))

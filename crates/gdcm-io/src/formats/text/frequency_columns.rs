@@ -3,6 +3,7 @@
 //! ```text
 //! FrequencyColumns::recognise   names and units -> which columns hold which responses
 //!   column_meaning.rs           meaning of a single column
+//!   response_group.rs           columns that belong to the same response
 //!   response_recognition.rs     responses from several columns
 //! FrequencyColumns::values      numbers -> points of each response (response_columns.rs)
 //! ```
@@ -12,7 +13,7 @@ use crate::formats::text::response_columns::{RecognisedResponse, ResponsePoints,
 use crate::formats::text::response_recognition::{FrequencyColumn, Recognition};
 use crate::formats::text::text_table::TextTable;
 use crate::formats::text::unrecognised::{Unrecognised, units_missing, unrecognised};
-use crate::reading_budget::VariableFault;
+use crate::reading_budget::{NO_VARIABLE, VariableFault};
 use crate::variable_fault::found_content::ResponseLack;
 use crate::variable_fault::line_fault::FrequencyFault;
 use crate::variable_fault::line_fault::LineFault;
@@ -39,8 +40,8 @@ impl FrequencyColumns {
         let frequency = recognition.frequency()?;
         let responses = recognition.responses();
         // Units that are neither given nor evident: the user must state them.
-        if !recognition.unsaid.is_empty() {
-            return Err(units_missing(table, recognition.unsaid));
+        if !recognition.missing_units.is_empty() {
+            return Err(units_missing(table, recognition.missing_units));
         }
         if responses.is_empty() {
             return Err(unrecognised(ResponseLack::Parts));
@@ -101,7 +102,7 @@ impl FrequencyColumns {
             if let Some(fault) = frequency_fault(value, before) {
                 let place = column_place(table, column);
                 return Err(VariableFault::line(
-                    "",
+                    NO_VARIABLE,
                     line,
                     LineFault::Frequency { place, fault },
                 ));

@@ -166,7 +166,7 @@ mod heading_tests {
                 separator,
                 decimal_comma: false,
                 columns,
-                trailing: false,
+                has_trailing_separator: false,
             },
         )
     }

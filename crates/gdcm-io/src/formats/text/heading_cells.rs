@@ -9,20 +9,25 @@ use crate::formats::text::layout::Layout;
 use crate::formats::text::lines::{NumberedLine, comment};
 use crate::formats::text::separator::Separator;
 
-/// Splits a heading into a cell for each column; `None` if this is impossible. The separator may
-/// differ from the separator between the numbers; these are tried, in this order: the numbers'
-/// separator, the other separators, wide blanks, blanks outside brackets, any blanks. For a single
-/// column, only the numbers' separator and the whole line are tried.
+/// Splits a heading into a cell for each column, in the first of these ways that gives a heading;
+/// `None` if none does:
+///
+/// 1. at the numbers' separator, unless this is blanks;
+/// 2. for a single column: the whole line as a cell; for more, at each other separator;
+/// 3. at two or more blanks, so that the names may contain single blanks;
+/// 4. at blanks outside brackets, so that the units may contain blanks;
+/// 5. at any blanks.
 pub(super) fn heading_cells(line: &str, layout: Layout) -> Option<Vec<String>> {
     let columns = layout.columns;
-    // Blanks are tried last, because they may also be within the names.
+    // Way 1
     if layout.separator != Separator::Blanks
-        && let Some(cells) = fitted(trimmed_cells(line, layout.separator, columns), layout)
+        && let Some(cells) = if_heading(trimmed_cells(line, layout.separator, columns), layout)
     {
         return Some(cells);
     }
+    // Way 2
     if columns == 1 {
-        return fitted(vec![line.trim().to_owned()], layout);
+        return if_heading(vec![line.trim().to_owned()], layout);
     }
     let others = [
         Separator::Tab,
@@ -31,18 +36,19 @@ pub(super) fn heading_cells(line: &str, layout: Layout) -> Option<Vec<String>> {
         Separator::Comma,
     ];
     for separator in others {
-        if let Some(cells) = fitted(trimmed_cells(line, separator, columns), layout) {
+        if let Some(cells) = if_heading(trimmed_cells(line, separator, columns), layout) {
             return Some(cells);
         }
     }
-    fitted(cells_at_wide_blanks(line, columns), layout)
-        .or_else(|| fitted(cells_with_brackets_joined(line, columns), layout))
-        .or_else(|| fitted(trimmed_cells(line, Separator::Blanks, columns), layout))
+    // Ways 3 to 5
+    if_heading(cells_at_wide_blanks(line, columns), layout)
+        .or_else(|| if_heading(cells_with_brackets_joined(line, columns), layout))
+        .or_else(|| if_heading(trimmed_cells(line, Separator::Blanks, columns), layout))
 }
 
 /// Returns the cells if they can be a heading: there is one for each column, some contain letters,
 /// and they are not a row with errors. First removes an additional empty cell at the end.
-fn fitted(mut cells: Vec<String>, layout: Layout) -> Option<Vec<String>> {
+fn if_heading(mut cells: Vec<String>, layout: Layout) -> Option<Vec<String>> {
     let ends_empty = cells.last().is_some_and(|cell| cell.trim().is_empty());
     if cells.len() == layout.columns + 1 && ends_empty {
         cells.pop();

@@ -26,6 +26,7 @@ pub(super) fn is_unit(text: &str) -> bool {
         if word.bytes().all(|byte| byte.is_ascii_digit()) {
             continue;
         }
+        // An exponent may follow a unit word directly: "m2".
         if !WORDS.contains(&word.trim_end_matches(|c: char| c.is_ascii_digit())) {
             return false;
         }

@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 use crate::formats::text::cell_number::cell_number;
 use crate::formats::text::lines::{comment, lines, without_comment};
 use crate::formats::text::separator::{Cells, Separator};
-use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::reading_budget::{NO_VARIABLE, ReadingBudget, VariableFault};
 
 /// Number of rows examined to recognise the layout.
 const SAMPLE: usize = 200;
@@ -23,8 +23,8 @@ pub(super) struct Layout {
     pub(super) decimal_comma: bool,
     /// Number of columns, not counting an empty column after a trailing separator.
     pub(super) columns: usize,
-    /// Whether the examined lines end in a trailing separator, after which there is an empty cell.
-    pub(super) trailing: bool,
+    /// Whether the examined lines end in a separator, after which there is an empty cell.
+    pub(super) has_trailing_separator: bool,
 }
 
 /// A row's cell count, and whether the last cell is empty.
@@ -44,7 +44,7 @@ impl Layout {
         // Step 1
         let mut tallies = candidates();
         for (_, line) in lines(text) {
-            budget.work(1, "")?;
+            budget.work(1, NO_VARIABLE)?;
             if line.trim().is_empty() || comment(line).is_some() {
                 continue;
             }
@@ -87,16 +87,16 @@ impl Layout {
         if has_number { Some(shape) } else { None }
     }
 
-    /// Returns whether a row has this layout's columns; one more empty cell may follow a trailing
-    /// separator. In a layout with trailing separators, a row that ends in an empty cell must have
-    /// this additional cell, otherwise a number is missing.
+    /// Returns whether a row has this layout's columns. If its last cell is empty, this is either
+    /// the cell after a trailing separator, or the last column with a missing number; the latter
+    /// does not fit in a layout with trailing separators.
     pub(super) fn fits(self, row: RowShape) -> bool {
-        let expected = if self.trailing && row.ends_empty {
-            self.columns + 1
+        if row.width == self.columns + 1 {
+            row.ends_empty
         } else {
-            self.columns
-        };
-        row.width == expected || (row.width == self.columns + 1 && row.ends_empty)
+            let lacks_number = row.ends_empty && self.has_trailing_separator;
+            row.width == self.columns && !lacks_number
+        }
     }
 }
 
@@ -157,7 +157,7 @@ impl Tally {
             separator: self.separator,
             decimal_comma: self.decimal_comma,
             columns: 0,
-            trailing: false,
+            has_trailing_separator: false,
         };
         if let Some(RowShape { width, ends_empty }) = layout.row_shape(line) {
             let count = self.widths.entry(width).or_default();
@@ -174,15 +174,19 @@ impl Tally {
             .widths
             .iter()
             .max_by_key(|(width, count)| (count.rows, **width))?;
-        let trailing = count.ending_empty == count.rows && width > 1;
-        let columns = if trailing { width - 1 } else { width };
+        let has_trailing_separator = count.ending_empty == count.rows && width > 1;
+        let columns = if has_trailing_separator {
+            width - 1
+        } else {
+            width
+        };
         Some(Score {
             rows: count.rows,
             layout: Layout {
                 separator: self.separator,
                 decimal_comma: self.decimal_comma,
                 columns,
-                trailing,
+                has_trailing_separator,
             },
         })
     }

@@ -2,7 +2,7 @@
 //! ends, and whether a quotation mark begins a string.
 
 use crate::formats::text::matlab_value_error::{MOST_NESTED, Position};
-use crate::reading_budget::VariableFault;
+use crate::reading_budget::{NO_VARIABLE, VariableFault};
 use crate::variable_fault::line_fault::LineFault;
 
 /// Open brackets in a statement that is skipped, the outermost first.
@@ -31,7 +31,7 @@ impl OpenBrackets {
 
     pub(super) fn open(&mut self, bracket: char, place: Position) -> Result<(), VariableFault> {
         if self.0.len() >= MOST_NESTED {
-            return Err(VariableFault::too_deep(""));
+            return Err(VariableFault::too_deep(NO_VARIABLE));
         }
         self.0.push(OpenBracket { bracket, place });
         Ok(())
@@ -66,7 +66,7 @@ impl OpenBrackets {
             return Ok(());
         };
         Err(VariableFault::line(
-            "",
+            NO_VARIABLE,
             place.line,
             LineFault::OpenBracket {
                 bracket,

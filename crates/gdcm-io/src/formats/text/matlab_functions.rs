@@ -4,7 +4,7 @@
 
 use crate::formats::text::matlab_value_error::{Position, ValueError, refused};
 use crate::formats::variables::{Array, StructArray, Value};
-use crate::reading_budget::ReadingBudget;
+use crate::reading_budget::{NO_VARIABLE, ReadingBudget};
 use crate::variable_fault::matlab_fault::MatlabFault;
 
 /// Numbers of rows or columns from this limit on are rejected; all integers below it are exact as
@@ -98,7 +98,7 @@ impl Call<'_> {
                 self.place,
             );
         };
-        budget.take((rows as u64).saturating_mul(columns as u64), 8, "")?;
+        budget.take((rows as u64).saturating_mul(columns as u64), 8, NO_VARIABLE)?;
         let mut values = match fill {
             Fill::Ones => vec![1.0; rows * columns],
             Fill::Zeros | Fill::Identity => vec![0.0; rows * columns],
@@ -170,8 +170,8 @@ fn record(
         && rest
             .peek()
             .is_some_and(|value| !matches!(value, Value::Text(_)));
-    if has_sample_time && let Some(step) = rest.next() {
-        fields.push(("Ts".to_owned(), vec![step]));
+    if has_sample_time && let Some(sample_time) = rest.next() {
+        fields.push(("Ts".to_owned(), vec![sample_time]));
     }
     while let Some(name) = rest.next() {
         let (Value::Text(name), Some(value)) = (name, rest.next()) else {

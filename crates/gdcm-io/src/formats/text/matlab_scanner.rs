@@ -10,7 +10,7 @@ use crate::formats::text::lines::excerpt;
 use crate::formats::text::matlab_brackets::OpenBrackets;
 use crate::formats::text::matlab_number_syntax::{is_digit, past_exponent, past_mantissa};
 use crate::formats::text::matlab_value_error::{MOST_NESTED, Position, ValueError, refused};
-use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::reading_budget::{NO_VARIABLE, ReadingBudget, VariableFault};
 use crate::variable_fault::line_fault::LineFault;
 use crate::variable_fault::matlab_fault::MatlabFault;
 
@@ -158,7 +158,11 @@ impl<'t> Scanner<'t> {
                 return Ok(());
             }
             if self.peek().is_none() {
-                return Err(VariableFault::line("", line, LineFault::OpenComment));
+                return Err(VariableFault::line(
+                    NO_VARIABLE,
+                    line,
+                    LineFault::OpenComment,
+                ));
             }
             self.new_line();
         }
@@ -217,7 +221,7 @@ impl<'t> Scanner<'t> {
             let Some(end) = end.filter(|&end| rest[end..].starts_with(quote)) else {
                 return refused(MatlabFault::OpenString { quote }, opening);
             };
-            budget.take(2 * end as u64 + 2, 1, "")?;
+            budget.take(2 * end as u64 + 2, 1, NO_VARIABLE)?;
             text.push_str(&rest[..end]);
             self.at += end + 1;
             if self.peek() != Some(quote) {
@@ -269,7 +273,7 @@ impl<'t> Scanner<'t> {
     pub(super) fn pass_statement(&mut self, budget: &ReadingBudget) -> Result<(), VariableFault> {
         let mut open = OpenBrackets::default();
         loop {
-            budget.work(1, "")?;
+            budget.work(1, NO_VARIABLE)?;
             let is_spaced = self.pass_blanks()?;
             let Some(character) = self.peek() else {
                 return open.check_closed();

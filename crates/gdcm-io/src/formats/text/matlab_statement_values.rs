@@ -9,7 +9,7 @@ use crate::formats::text::matlab_scanner::{Number, Scanner};
 use crate::formats::text::matlab_value_error::{MOST_NESTED, Position, ValueError, refused};
 use crate::formats::text::matlab_workspace::Workspace;
 use crate::formats::variables::{Array, CellArray, ElementKind, TextArray, Value};
-use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::reading_budget::{NO_VARIABLE, ReadingBudget, VariableFault};
 use crate::variable_fault::matlab_fault::MatlabFault;
 
 /// Operators within brackets if blanks surround them. A sign with a blank before but not after it
@@ -17,11 +17,15 @@ use crate::variable_fault::matlab_fault::MatlabFault;
 const OPERATORS: &str = "+-*/^:.\\";
 /// Operators within brackets if no blank precedes them; the quotation mark transposes.
 const ATTACHED_OPERATORS: &str = "+-*/^:.\\'";
-/// Argument `in_matrix` for a number that is not between square brackets.
-const ALONE: bool = false;
-/// Argument `in_matrix` for a number between square brackets, where a blank may separate two
-/// elements.
-const IN_MATRIX: bool = true;
+
+/// Where a number is written.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum NumberPlace {
+    /// Outside square brackets, where blanks do not matter.
+    Alone,
+    /// Between square brackets, where a blank may separate two elements.
+    InMatrix,
+}
 
 /// Reads values, beginning at the scanner's position.
 pub(super) struct ValueReader<'r, 't, 'm> {
@@ -63,11 +67,11 @@ impl ValueReader<'_, '_, '_> {
     /// character a matrix, a cell array or a string; else a function call, or a copy of a variable.
     fn read_value(&mut self, depth: usize) -> Result<Value, ValueError> {
         if depth > MOST_NESTED {
-            return Err(VariableFault::too_deep("").into());
+            return Err(VariableFault::too_deep(NO_VARIABLE).into());
         }
         self.scanner.pass_blanks()?;
         let place = self.scanner.position();
-        if let Some(ComplexNumber { re, im }) = self.read_complex(ALONE)? {
+        if let Some(ComplexNumber { re, im }) = self.read_complex(NumberPlace::Alone)? {
             let im = if im == 0.0 { None } else { Some(vec![im]) };
             return Ok(Value::Array(Array {
                 im,
@@ -102,10 +106,9 @@ impl ValueReader<'_, '_, '_> {
     /// Reads a real, imaginary or complex number at this position.
     ///
     /// 1. A number with its signs; `None`, without moving, if there is none.
-    /// 2. If it is real, and a sign follows that does not begin another element (`in_matrix`): the
-    ///    imaginary part, as in `1 - 2i`.
+    /// 2. If it is real, and a sign follows that continues it: the imaginary part, as in `1 - 2i`.
     /// 3. Otherwise, or if no imaginary number follows, the number of step 1 alone.
-    fn read_complex(&mut self, in_matrix: bool) -> Result<Option<ComplexNumber>, ValueError> {
+    fn read_complex(&mut self, place: NumberPlace) -> Result<Option<ComplexNumber>, ValueError> {
         // Step 1
         let before = self.scanner.clone();
         let Some(Number {
@@ -119,15 +122,8 @@ impl ValueReader<'_, '_, '_> {
         // Step 2
         let behind = self.scanner.clone();
         let is_spaced = self.scanner.pass_blanks()?;
-        let is_sign = matches!(self.scanner.peek(), Some('+' | '-'));
-        // The blank in `[1 -2i]` separates two elements, but not in `[1 - 2i]`, where another blank
-        // follows the sign.
-        let is_separate = in_matrix
-            && is_spaced
-            && !self.scanner.rest()[usize::from(is_sign)..].starts_with([' ', '\t']);
-        if is_sign
-            && !is_imaginary
-            && !is_separate
+        if !is_imaginary
+            && self.sign_continues_number(place, is_spaced)
             && let Ok(Some(Number {
                 value: im,
                 is_imaginary: true,
@@ -144,6 +140,16 @@ impl ValueReader<'_, '_, '_> {
         }))
     }
 
+    /// Returns whether a sign follows that continues the number before it; `is_spaced` states
+    /// whether a blank is between them. In a matrix, the blank in `[1 -2i]` separates two elements,
+    /// but not in `[1 - 2i]`, where another blank follows the sign.
+    fn sign_continues_number(&self, place: NumberPlace, is_spaced: bool) -> bool {
+        let Some(after_sign) = self.scanner.rest().strip_prefix(['+', '-']) else {
+            return false;
+        };
+        place == NumberPlace::Alone || !is_spaced || after_sign.starts_with([' ', '\t'])
+    }
+
     /// Reads a number, `Inf` or `NaN` with any signs before it. Returns `None` if there is no
     /// number, possibly after moving past signs or a name.
     fn read_signed(&mut self) -> Result<Option<Number>, ValueError> {
@@ -156,7 +162,7 @@ impl ValueReader<'_, '_, '_> {
             }
             self.scanner.at += 1;
             self.scanner.pass_blanks()?;
-            self.budget.work(1, "")?;
+            self.budget.work(1, NO_VARIABLE)?;
         }
         if let Some(number) = self.scanner.read_number()? {
             return Ok(Some(Number {
@@ -225,7 +231,7 @@ impl ValueReader<'_, '_, '_> {
                     if row_length > 0 && self.is_operator(sign, is_spaced) {
                         return refuse_expression(place);
                     }
-                    self.budget.take(2, size_of::<T>() as u64, "")?;
+                    self.budget.take(2, size_of::<T>() as u64, NO_VARIABLE)?;
                     elements.push(read_element(self)?);
                     row_length += 1;
                 }
@@ -256,7 +262,7 @@ impl ValueReader<'_, '_, '_> {
             columns,
             elements,
         } = self.read_rows('}', opening, |reader| {
-            reader.budget.take(4, 64, "")?;
+            reader.budget.take(4, 64, NO_VARIABLE)?;
             reader.read_value(depth + 1)
         })?;
         Ok(Value::Cell(CellArray {
@@ -276,10 +282,10 @@ impl ValueReader<'_, '_, '_> {
         } = self.read_rows(']', opening, Self::read_matrix_element)?;
         let count = elements.len();
         self.budget
-            .take(count as u64, 2 * size_of::<Element>() as u64, "")?;
+            .take(count as u64, 2 * size_of::<Element>() as u64, NO_VARIABLE)?;
         let is_transposed = self.scanner.take("'");
-        // Values are stored in column-major order, which for the transpose is the order as read, row
-        // by row.
+        // Values are stored in column-major order, which for the transpose is the order as read,
+        // row by row.
         let shape = if is_transposed {
             vec![columns, rows]
         } else {
@@ -325,7 +331,7 @@ impl ValueReader<'_, '_, '_> {
     /// Reads an element between square brackets.
     fn read_matrix_element(&mut self) -> Result<Element, ValueError> {
         let place = self.scanner.position();
-        if let Some(ComplexNumber { re, im }) = self.read_complex(IN_MATRIX)? {
+        if let Some(ComplexNumber { re, im }) = self.read_complex(NumberPlace::InMatrix)? {
             return Ok(Element::Number { re, im });
         }
         match self.scanner.peek() {
@@ -353,7 +359,8 @@ impl ValueReader<'_, '_, '_> {
             if arguments.is_empty() && self.scanner.take(")") {
                 break;
             }
-            self.budget.take(2, size_of::<Value>() as u64, "")?;
+            self.budget
+                .take(2, size_of::<Value>() as u64, NO_VARIABLE)?;
             arguments.push(self.read_value(depth + 1)?);
             self.scanner.pass_blanks()?;
             if self.scanner.take(")") {

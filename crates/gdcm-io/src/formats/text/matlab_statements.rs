@@ -14,7 +14,7 @@ use crate::formats::text::matlab_statement_values::ValueReader;
 use crate::formats::text::matlab_value_error::{Position, ValueError, refused};
 use crate::formats::text::matlab_workspace::Workspace;
 use crate::formats::variables::{Value, Variable};
-use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::reading_budget::{NO_VARIABLE, ReadingBudget, VariableFault};
 use crate::variable_fault::matlab_fault::MatlabFault;
 use crate::variable_fault::unread::Unread;
 
@@ -68,7 +68,7 @@ pub fn read_statements(text: &str, budget: &ReadingBudget) -> Result<Statements,
         open_blocks: 0,
     };
     while !reading.scanner.rest().is_empty() {
-        budget.work(1, "")?;
+        budget.work(1, NO_VARIABLE)?;
         reading.read_statement()?;
     }
     Ok(Statements {
@@ -172,7 +172,7 @@ impl<'t> Reading<'t, '_> {
             reason,
         };
         self.budget
-            .take(note.to_string().len() as u64 + 32, 1, "")?;
+            .take(note.to_string().len() as u64 + 32, 1, NO_VARIABLE)?;
         self.notes.push(note);
         self.scanner.pass_statement(self.budget)
     }

@@ -7,7 +7,7 @@ use std::collections::HashMap;
 
 use crate::formats::text::matlab_value_error::{MOST_NESTED, Position, ValueError, refused};
 use crate::formats::variables::{StructArray, Value, Variable};
-use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::reading_budget::{NO_VARIABLE, ReadingBudget, VariableFault};
 use crate::variable_fault::matlab_fault::MatlabFault;
 use crate::variable_fault::unread::Unread;
 
@@ -17,7 +17,7 @@ pub(super) struct Workspace<'t> {
     /// Variables ordered by first assignment, with their last values.
     pub(super) variables: Vec<Variable>,
     /// Index in `variables`, by name.
-    places: HashMap<&'t str, usize>,
+    indices: HashMap<&'t str, usize>,
 }
 
 impl<'t> Workspace<'t> {
@@ -36,23 +36,23 @@ impl<'t> Workspace<'t> {
             2,
             name,
         )?;
-        let place = match self.places.get(name) {
-            Some(place) => *place,
+        let index = match self.indices.get(name) {
+            Some(index) => *index,
             None => self.add(name),
         };
-        set_field(&mut self.variables[place].value, fields, value);
+        set_field(&mut self.variables[index].value, fields, value);
         Ok(())
     }
 
     /// Adds a variable with an empty struct as its value; returns its index.
     fn add(&mut self, name: &'t str) -> usize {
-        let place = self.variables.len();
-        self.places.insert(name, place);
+        let index = self.variables.len();
+        self.indices.insert(name, index);
         self.variables.push(Variable {
             name: name.to_owned(),
             value: empty_struct(),
         });
-        place
+        index
     }
 
     /// Returns a copy of the variable or field at `path`; `place` is the position of its name in
@@ -70,7 +70,7 @@ impl<'t> Workspace<'t> {
         let Some((name, fields)) = path.split_first() else {
             return refused(MatlabFault::MissingName, place);
         };
-        let Some(&index) = self.places.get(name) else {
+        let Some(&index) = self.indices.get(name) else {
             return refused(
                 MatlabFault::NotAssigned {
                     name: (*name).to_owned(),
@@ -99,7 +99,7 @@ impl<'t> Workspace<'t> {
                 place,
             );
         }
-        budget.take(memory_of(value, 0)?, 1, "")?;
+        budget.take(memory_of(value, 0)?, 1, NO_VARIABLE)?;
         Ok(value.clone())
     }
 }
@@ -118,12 +118,12 @@ fn set_field(target: &mut Value, path: &[&str], value: Value) {
     let words = target.words();
     match target {
         Value::Struct(StructArray { fields, .. }) => {
-            let known = fields.iter().position(|(known, _)| known == name);
-            let place = known.unwrap_or(fields.len());
-            if known.is_none() {
+            let existing = fields.iter().position(|(existing, _)| existing == name);
+            let index = existing.unwrap_or(fields.len());
+            if existing.is_none() {
                 fields.push(((*name).to_owned(), vec![empty_struct()]));
             }
-            if let Some(field) = fields[place].1.first_mut() {
+            if let Some(field) = fields[index].1.first_mut() {
                 set_field(field, rest, value);
             }
         }
@@ -141,7 +141,7 @@ fn set_field(target: &mut Value, path: &[&str], value: Value) {
 /// Returns the memory that a copy of a value needs \[bytes\].
 fn memory_of(value: &Value, depth: usize) -> Result<u64, VariableFault> {
     if depth > MOST_NESTED {
-        return Err(VariableFault::too_deep(""));
+        return Err(VariableFault::too_deep(NO_VARIABLE));
     }
     let mut memory = value.own_memory();
     for inner in value.inner() {

@@ -6,7 +6,7 @@ use crate::formats::text::cell_number::is_number;
 pub(super) struct NameLine<'t> {
     pub(super) name: &'t str,
     /// Whether an equals sign follows the name.
-    pub(super) assigned: bool,
+    pub(super) has_equals_sign: bool,
     /// Text after the name on the same line, such as numbers.
     pub(super) rest: &'t str,
 }
@@ -26,7 +26,7 @@ pub(super) fn name_line(line: &str) -> Option<NameLine<'_>> {
     if let Some(rest) = behind.strip_prefix('=') {
         return Some(NameLine {
             name,
-            assigned: true,
+            has_equals_sign: true,
             rest: without_size(rest.trim()),
         });
     }
@@ -36,7 +36,7 @@ pub(super) fn name_line(line: &str) -> Option<NameLine<'_>> {
     }
     Some(NameLine {
         name,
-        assigned: false,
+        has_equals_sign: false,
         rest,
     })
 }
@@ -112,9 +112,9 @@ mod tests {
             name_line(text).map(
                 |NameLine {
                      name,
-                     assigned,
+                     has_equals_sign,
                      rest,
-                 }| (name, assigned, rest),
+                 }| (name, has_equals_sign, rest),
             )
         };
         assert_eq!(line("A"), Some(("A", false, "")));

@@ -26,7 +26,7 @@ use crate::formats::text::matrix_lines::{
 use crate::formats::text::table_reader::read_table;
 use crate::formats::text::text_table::TextTable;
 use crate::formats::variables::{Array, Value, Variable};
-use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::reading_budget::{NO_VARIABLE, ReadingBudget, VariableFault};
 use crate::variable_fault::found_content::FoundContent;
 use crate::variable_fault::line_fault::LineFault;
 
@@ -88,7 +88,7 @@ pub fn read_matrices(text: &str, budget: &ReadingBudget) -> Result<NamedMatrices
     };
     // Step 1
     for (number, line) in lines(text) {
-        budget.work(1, "")?;
+        budget.work(1, NO_VARIABLE)?;
         if !line.trim().is_empty() && comment(line).is_none() && !is_rule(line) {
             reading.take_line(number, line)?;
         }
@@ -112,11 +112,11 @@ struct UnparsedMatrix {
     line: usize,
     /// Whether an equals sign follows the matrix name; then a single word below it is a column
     /// name.
-    assigned: bool,
+    has_equals_sign: bool,
     /// Factor by which all numbers are multiplied.
     scale: f64,
     /// Whether each row begins with a name.
-    labelled: bool,
+    has_row_names: bool,
     parts: Vec<Part>,
 }
 
@@ -133,7 +133,7 @@ impl Reading<'_> {
     /// name, "Columns …", common factor, row, row that begins with a name, any other.
     fn take_line(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
         if let Some(name_line) = name_line(line) {
-            return if !name_line.assigned && self.awaits_columns() {
+            return if !name_line.has_equals_sign && self.awaits_columns() {
                 self.take_column_names(number, line)
             } else {
                 self.begin_matrix(number, &name_line)
@@ -152,7 +152,10 @@ impl Reading<'_> {
         if is_row_of_numbers(line) {
             return self.take_row(number, line);
         }
-        let has_row_names = self.matrices.last().is_some_and(|matrix| matrix.labelled);
+        let has_row_names = self
+            .matrices
+            .last()
+            .is_some_and(|matrix| matrix.has_row_names);
         if has_row_names
             && let Some((_, rest)) = line.trim_start().split_once(char::is_whitespace)
             && is_row_of_numbers(rest)
@@ -181,7 +184,7 @@ impl Reading<'_> {
         }
         if 2 * numbers >= words {
             return Err(VariableFault::line(
-                "",
+                NO_VARIABLE,
                 number,
                 LineFault::NotARow {
                     start: excerpt(line),
@@ -199,7 +202,7 @@ impl Reading<'_> {
     fn awaits_columns(&self) -> bool {
         self.matrices
             .last()
-            .is_some_and(|matrix| matrix.assigned && matrix.parts.is_empty())
+            .is_some_and(|matrix| matrix.has_equals_sign && matrix.parts.is_empty())
     }
 
     /// Begins a matrix at the line with its name.
@@ -210,16 +213,16 @@ impl Reading<'_> {
     ) -> Result<(), VariableFault> {
         let NameLine {
             name,
-            assigned,
+            has_equals_sign,
             rest,
         } = *name_line;
         self.budget.take(256 + name.len() as u64, 1, name)?;
         self.matrices.push(UnparsedMatrix {
             name: name.to_owned(),
             line: number,
-            assigned,
+            has_equals_sign,
             scale: 1.0,
-            labelled: false,
+            has_row_names: false,
             parts: Vec::new(),
         });
         if rest.is_empty() {
@@ -232,7 +235,7 @@ impl Reading<'_> {
     /// Reads a line with column names; the rows below it then begin with names.
     fn take_column_names(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
         if let Some(matrix) = self.matrices.last_mut() {
-            matrix.labelled = true;
+            matrix.has_row_names = true;
         }
         self.notes.push(ReadingNote::ColumnNames {
             line: number,
@@ -257,7 +260,11 @@ impl Reading<'_> {
     /// Adds a row to the last part of the last matrix.
     fn take_row(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
         let Some(matrix) = self.matrices.last_mut() else {
-            return Err(VariableFault::line("", number, LineFault::UnnamedNumbers));
+            return Err(VariableFault::line(
+                NO_VARIABLE,
+                number,
+                LineFault::UnnamedNumbers,
+            ));
         };
         self.budget
             .take(2 * line.len() as u64 + 32, 1, &matrix.name)?;

@@ -38,6 +38,7 @@ mod matrix_text;
 mod numbered_words;
 mod quantity_words;
 mod response_columns;
+mod response_group;
 mod response_label;
 mod response_recognition;
 pub(crate) mod sections;
@@ -49,6 +50,7 @@ mod unrecognised;
 use crate::file_error::FileError;
 use crate::formats::text::encoding::decode;
 use crate::formats::text::matlab_statements::{Statements, read_statements};
+use crate::formats::variables::PageIndex;
 use crate::formats::{Contents, Importer};
 
 pub(crate) use complex_columns::split_complex;
@@ -67,6 +69,7 @@ pub(crate) const MATLAB_STATEMENTS: Importer = Importer {
     endings: &["m"],
     recognises: |bytes, ending| {
         if ending == "m" {
+            // A file with this ending may also hold only numbers, which are read as a text.
             !begins_with_numbers(bytes)
         } else {
             TEXT.endings.contains(&ending) && begins_with_statement(bytes)
@@ -79,7 +82,8 @@ pub(crate) const MATLAB_STATEMENTS: Importer = Importer {
         Ok(Contents::Variables {
             variables,
             notes,
-            pages_first: false,
+            // Without effect: arrays in statements have two dimensions.
+            page_index: PageIndex::Last,
         })
     },
 };

@@ -13,7 +13,7 @@ use crate::formats::text::cell_number::is_number;
 use crate::formats::text::clock_time::clock_s;
 use crate::formats::text::lines::{comment, lines};
 use crate::formats::text::separator::Separator;
-use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::reading_budget::{NO_VARIABLE, ReadingBudget, VariableFault};
 
 /// Number of lines examined to recognise the columns.
 const SAMPLE: usize = 200;
@@ -34,9 +34,9 @@ pub struct NumberedText {
     pub notes: Vec<ReadingNote>,
 }
 
-/// Column content.
+/// What a column holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
+enum ColumnContent {
     Numbers,
     /// Clock times, with or without a date.
     Clock,
@@ -54,11 +54,11 @@ pub fn numbered_words(
     let Some(mut numbering) = Numbering::recognise(text) else {
         return Ok(None);
     };
-    budget.take(text.len() as u64, 2, "")?;
+    budget.take(text.len() as u64, 2, NO_VARIABLE)?;
     // Step 2
     let mut numbered = String::with_capacity(text.len());
     for (_, line) in lines(text) {
-        budget.work(1, "")?;
+        budget.work(1, NO_VARIABLE)?;
         let cells = trimmed_cells(line, numbering.separator);
         if cells.len() == numbering.columns.len() && comment(line).is_none() {
             numbered.push_str(&numbering.line(cells));
@@ -92,7 +92,7 @@ struct Numbering {
 
 /// State of a column while its distinct words are numbered.
 struct Column {
-    kind: Kind,
+    content: ColumnContent,
     /// Number assigned to each word, from 1.
     words: BTreeMap<String, usize>,
     clock: Option<ClockSpan>,
@@ -128,10 +128,10 @@ impl Numbering {
         let mut columns = Vec::with_capacity(width);
         let mut number_columns = 0;
         for index in 0..width {
-            let kind = kind_of_column(&rows, index);
-            number_columns += usize::from(kind == Kind::Numbers);
+            let content = content_of_column(&rows, index);
+            number_columns += usize::from(content == ColumnContent::Numbers);
             columns.push(Column {
-                kind,
+                content,
                 words: BTreeMap::new(),
                 clock: None,
             });
@@ -152,13 +152,13 @@ impl Numbering {
         let is_row = cells
             .iter()
             .zip(&self.columns)
-            .all(|(cell, column)| column.kind != Kind::Numbers || is_number(cell));
+            .all(|(cell, column)| column.content != ColumnContent::Numbers || is_number(cell));
         if is_row {
             for (cell, column) in cells.iter_mut().zip(&mut self.columns) {
-                match column.kind {
-                    Kind::Numbers => {}
-                    Kind::Clock => *cell = column.seconds(cell),
-                    Kind::Words => *cell = column.number(cell),
+                match column.content {
+                    ColumnContent::Numbers => {}
+                    ColumnContent::Clock => *cell = column.seconds(cell),
+                    ColumnContent::Words => *cell = column.number(cell),
                 }
             }
         } else if self.heading.is_none() {
@@ -171,13 +171,13 @@ impl Numbering {
         let mut notes = Vec::new();
         for (index, column) in self.columns.iter().enumerate() {
             let place = self.column_place(index);
-            match column.kind {
-                Kind::Numbers => {}
-                Kind::Clock => notes.push(ReadingNote::TimesOfDay { column: place }),
-                Kind::Words if column.words.len() > MOST_WORDS => {
+            match column.content {
+                ColumnContent::Numbers => {}
+                ColumnContent::Clock => notes.push(ReadingNote::TimesOfDay { column: place }),
+                ColumnContent::Words if column.words.len() > MOST_WORDS => {
                     notes.push(ReadingNote::TooManyWords { column: place });
                 }
-                Kind::Words => notes.push(ReadingNote::NumberedWords {
+                ColumnContent::Words => notes.push(ReadingNote::NumberedWords {
                     column: place,
                     words: column.numbered_words(),
                 }),
@@ -283,7 +283,7 @@ fn candidate(sample: &[&str], separator: Separator) -> Option<Candidate> {
 
 /// Returns what more than half the filled cells in a column hold; words if neither numbers nor
 /// clock times prevail. An empty column counts as numbers.
-fn kind_of_column(rows: &[Vec<String>], index: usize) -> Kind {
+fn content_of_column(rows: &[Vec<String>], index: usize) -> ColumnContent {
     let mut filled = 0;
     let mut numbers = 0;
     let mut clock_times = 0;
@@ -297,11 +297,11 @@ fn kind_of_column(rows: &[Vec<String>], index: usize) -> Kind {
         clock_times += usize::from(clock_s(cell).is_some());
     }
     if filled == 0 || 2 * numbers > filled {
-        Kind::Numbers
+        ColumnContent::Numbers
     } else if 2 * clock_times > filled {
-        Kind::Clock
+        ColumnContent::Clock
     } else {
-        Kind::Words
+        ColumnContent::Words
     }
 }
 

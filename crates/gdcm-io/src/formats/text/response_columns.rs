@@ -1,7 +1,7 @@
 //! The table columns that hold a frequency response, and its points.
 
 use crate::formats::text::text_table::TextTable;
-use crate::reading_budget::VariableFault;
+use crate::reading_budget::{NO_VARIABLE, VariableFault};
 use crate::variable_fault::column_place::ColumnPlace;
 use crate::variable_fault::line_fault::LineFault;
 
@@ -91,7 +91,7 @@ impl RecognisedResponse {
                 if !number(column).is_finite() {
                     let place = column_place(table, column);
                     return Err(VariableFault::line(
-                        "",
+                        NO_VARIABLE,
                         line,
                         LineFault::IncompleteResponse { place },
                     ));
@@ -101,7 +101,7 @@ impl RecognisedResponse {
             if !(re.is_finite() && im.is_finite()) {
                 let place = column_place(table, columns[0]);
                 return Err(VariableFault::line(
-                    "",
+                    NO_VARIABLE,
                     line,
                     LineFault::Magnitude { place },
                 ));

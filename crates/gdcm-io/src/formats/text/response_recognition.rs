@@ -1,9 +1,8 @@
 //! Assembles frequency responses from table columns.
 //!
 //! A response needs two columns: real and imaginary part (rectangular form), or magnitude and phase
-//! (polar form). Columns belong to the same response if their names give the same label, which is
-//! the output and the input; a column without a label belongs with the columns before it. A missing
-//! unit that the numbers do not reveal is not guessed: it is added to `unsaid`, and the user is
+//! (polar form). The columns are first grouped by response (`response_group.rs`). A missing unit
+//! that the numbers do not reveal is not guessed: it is added to `missing_units`, and the user is
 //! asked.
 //!
 //! `Recognition::frequency` is called before `Recognition::responses`, so that notes and missing
@@ -18,7 +17,7 @@ use crate::formats::text::quantity_words::{KnownUnit, Quantity};
 use crate::formats::text::response_columns::{
     CoherenceColumn, RecognisedResponse, ResponseParts, column_name, column_place,
 };
-use crate::formats::text::response_label::ResponseLabel;
+use crate::formats::text::response_group::{GroupColumn, PolarColumns, ResponseGroup};
 use crate::formats::text::text_table::TextTable;
 use crate::formats::text::unrecognised::{UnitNotGiven, Unrecognised, unrecognised};
 use crate::variable_fault::found_content::ResponseLack;
@@ -45,7 +44,7 @@ pub(super) struct Recognition<'t> {
     /// Notes for the user: each choice with its reason.
     pub(super) notes: Vec<ReadingNote>,
     /// Columns whose unit the user must state.
-    pub(super) unsaid: Vec<UnitNotGiven>,
+    pub(super) missing_units: Vec<UnitNotGiven>,
     /// Unused columns by name; for example "column 5" for one without a name.
     pub(super) unused: Vec<String>,
 }
@@ -57,13 +56,13 @@ impl<'t> Recognition<'t> {
             table,
             meanings: column_meanings(table),
             notes: Vec::new(),
-            unsaid: Vec::new(),
+            missing_units: Vec::new(),
             unused: Vec::new(),
         }
     }
 
     /// Finds the frequency column and its unit; unless the unit is rad/s or Hz, the column is added
-    /// to `unsaid`, and the factor is 1.
+    /// to `missing_units`, and the factor is 1.
     ///
     /// # Errors
     /// [`Unrecognised`] if there is no frequency column.
@@ -79,7 +78,7 @@ impl<'t> Recognition<'t> {
             Some(KnownUnit::Hertz) => (TAU, "Hz"),
             Some(KnownUnit::RadianPerSecond) => (1.0, "rad/s"),
             _ => {
-                self.unsaid.push(UnitNotGiven {
+                self.missing_units.push(UnitNotGiven {
                     column,
                     units: ["rad/s", "Hz"],
                 });
@@ -148,38 +147,40 @@ impl<'t> Recognition<'t> {
     }
 
     /// Returns the columns that give a group's complex numbers; real and imaginary parts are
-    /// preferred to magnitude and phase. Returns `None` if a part is missing.
-    fn parts(&mut self, group: &Group) -> Option<ResponseParts> {
-        let polar = group.polar_columns();
+    /// preferred to magnitude and phase, which then serve as a check. Returns `None` if a part is
+    /// missing.
+    fn parts(&mut self, group: &ResponseGroup) -> Option<ResponseParts> {
+        let polar_columns = group.polar_columns();
         if let Some(re) = group.column(Quantity::Real)
             && let Some(im) = group.column(Quantity::Imaginary)
         {
             let parts = ResponseParts::Rectangular { re, im };
             self.note(re, ColumnReading::Real, UnitReason::NotNeeded);
             self.note(im, ColumnReading::Imaginary, UnitReason::NotNeeded);
-            if let Some(columns) = polar {
-                let polar = self.read_polar(columns);
-                // Do not ask for missing units in the polar form, which serves only as a check.
-                if polar.unsaid.is_empty() {
+            if let Some(polar_columns) = polar_columns {
+                let polar = self.read_polar(polar_columns);
+                // Do not ask for missing units: they are needed only for the check.
+                if polar.missing_units.is_empty() {
                     self.note_agreement(parts, polar.parts);
                 }
             }
             return Some(parts);
         }
-        let polar = self.read_polar(polar?);
-        self.unsaid.extend(polar.unsaid);
+        let polar = self.read_polar(polar_columns?);
+        self.missing_units.extend(polar.missing_units);
         Some(polar.parts)
     }
 
     /// Notes that a group's columns are not used because one part of the complex number is missing.
-    fn note_incomplete(&mut self, group: &Group) {
-        for known in &group.columns {
-            if known.quantity == Quantity::Error {
+    fn note_incomplete(&mut self, group: &ResponseGroup) {
+        for member in &group.columns {
+            // A column with standard deviations has already been noted.
+            if member.quantity == Quantity::Error {
                 continue;
             }
-            let place = column_place(self.table, known.column);
+            let place = column_place(self.table, member.column);
             self.notes.push(ReadingNote::HalfResponse { place });
-            self.unused.push(column_name(self.table, known.column));
+            self.unused.push(column_name(self.table, member.column));
         }
     }
 
@@ -189,7 +190,7 @@ impl<'t> Recognition<'t> {
     fn read_coherence(&mut self, column: usize) -> CoherenceColumn {
         let unit = self.meanings[column].unit;
         if unit.is_none() {
-            self.unsaid.push(UnitNotGiven {
+            self.missing_units.push(UnitNotGiven {
                 column,
                 units: ["gamma2", "gamma"],
             });
@@ -220,8 +221,8 @@ impl<'t> Recognition<'t> {
     }
 
     /// Groups the columns by response, and notes columns whose meaning is unknown.
-    fn groups(&mut self) -> Vec<Group> {
-        let mut groups: Vec<Group> = Vec::new();
+    fn groups(&mut self) -> Vec<ResponseGroup> {
+        let mut groups: Vec<ResponseGroup> = Vec::new();
         for (column, meaning) in self.meanings.iter().enumerate() {
             let Some(quantity) = meaning.quantity else {
                 let place = column_place(self.table, column);
@@ -233,13 +234,7 @@ impl<'t> Recognition<'t> {
                 continue;
             }
             let member = GroupColumn { quantity, column };
-            match group_for(&groups, quantity, &meaning.label) {
-                Some(index) => groups[index].columns.push(member),
-                None => groups.push(Group {
-                    label: meaning.label.clone(),
-                    columns: vec![member],
-                }),
-            }
+            ResponseGroup::add_column(&mut groups, member, &meaning.label);
         }
         groups
     }
@@ -253,7 +248,7 @@ impl<'t> Recognition<'t> {
     /// The interpretation is noted only if both units are known.
     fn read_polar(&mut self, columns: PolarColumns) -> PolarReading {
         let PolarColumns { magnitude, phase } = columns;
-        let mut unsaid = Vec::new();
+        let mut missing_units = Vec::new();
         let mut in_db = false;
         let mut reason = UnitReason::NotNeeded;
         match self.meanings[magnitude].unit {
@@ -266,7 +261,7 @@ impl<'t> Recognition<'t> {
                 in_db = true;
                 reason = UnitReason::NegativeNumbers;
             }
-            None => unsaid.push(UnitNotGiven {
+            None => missing_units.push(UnitNotGiven {
                 column: magnitude,
                 units: ["dB", "abs"],
             }),
@@ -275,12 +270,12 @@ impl<'t> Recognition<'t> {
         match self.meanings[phase].unit {
             Some(KnownUnit::Degree) => in_degrees = true,
             Some(KnownUnit::Radian) => {}
-            _ => unsaid.push(UnitNotGiven {
+            _ => missing_units.push(UnitNotGiven {
                 column: phase,
                 units: ["deg", "rad"],
             }),
         }
-        if unsaid.is_empty() {
+        if missing_units.is_empty() {
             let reading = if in_db {
                 ColumnReading::MagnitudeInDb
             } else {
@@ -301,7 +296,7 @@ impl<'t> Recognition<'t> {
                 phase,
                 in_degrees,
             },
-            unsaid,
+            missing_units,
         }
     }
 
@@ -339,65 +334,11 @@ impl<'t> Recognition<'t> {
     }
 }
 
-/// Columns that belong to the same response.
-#[derive(Default)]
-struct Group {
-    label: ResponseLabel,
-    columns: Vec<GroupColumn>,
-}
-
-/// Column that holds a response quantity.
-struct GroupColumn {
-    quantity: Quantity,
-    /// Column index, from 0.
-    column: usize,
-}
-
-/// Indices of the magnitude and phase columns.
-#[derive(Clone, Copy)]
-struct PolarColumns {
-    magnitude: usize,
-    phase: usize,
-}
-
 /// Interpretation of a magnitude and a phase column.
 struct PolarReading {
     parts: ResponseParts,
     /// Columns among these two whose unit the user must state.
-    unsaid: Vec<UnitNotGiven>,
-}
-
-impl Group {
-    /// Returns the index of the column that holds a quantity.
-    fn column(&self, quantity: Quantity) -> Option<usize> {
-        let found = self.columns.iter().find(|known| known.quantity == quantity);
-        found.map(|known| known.column)
-    }
-
-    /// Returns magnitude and phase; `None` unless both are present.
-    fn polar_columns(&self) -> Option<PolarColumns> {
-        Some(PolarColumns {
-            magnitude: self.column(Quantity::Magnitude)?,
-            phase: self.column(Quantity::Phase)?,
-        })
-    }
-}
-
-/// Returns the index of the group to which a column belongs, among the groups that do not have the
-/// quantity yet: first the last group, if the column has no label or holds an error; else the last
-/// group with the same label; else `None`, and the column begins a group.
-fn group_for(groups: &[Group], quantity: Quantity, label: &ResponseLabel) -> Option<usize> {
-    // An error column's label names a quantity, not a channel, so the column joins the last group.
-    let joins_last = *label == ResponseLabel::default() || quantity == Quantity::Error;
-    if joins_last
-        && let Some(last) = groups.last()
-        && last.column(quantity).is_none()
-    {
-        return Some(groups.len() - 1);
-    }
-    groups
-        .iter()
-        .rposition(|group| group.label == *label && group.column(quantity).is_none())
+    missing_units: Vec<UnitNotGiven>,
 }
 
 fn column_meanings(table: &TextTable) -> Vec<ColumnMeaning> {

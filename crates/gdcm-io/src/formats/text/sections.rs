@@ -25,6 +25,7 @@ pub fn sections(text: &str) -> Vec<(usize, &str)> {
             first_line = number;
             start = end;
         }
+        // Any line that is no heading counts as a row.
         has_rows = !is_heading;
     }
     sections.extend(text.get(start..).map(|part| (first_line, part)));

@@ -15,7 +15,7 @@ use crate::formats::text::layout::{Layout, RowShape};
 use crate::formats::text::lines::{NumberedLine, comment, excerpt, is_rule, lines};
 use crate::formats::text::separator::Separator;
 use crate::formats::text::text_table::TextTable;
-use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::reading_budget::{NO_VARIABLE, ReadingBudget, VariableFault};
 use crate::variable_fault::found_content::FoundContent;
 use crate::variable_fault::line_fault::LineFault;
 
@@ -73,7 +73,7 @@ struct Reading<'m> {
 impl<'m> Reading<'m> {
     fn new(layout: Layout, budget: &'m ReadingBudget<'m>) -> Result<Self, VariableFault> {
         // Memory for an empty column, and later for its unit and name.
-        budget.take(layout.columns as u64, 128, "")?;
+        budget.take(layout.columns as u64, 128, NO_VARIABLE)?;
         Ok(Self {
             layout,
             budget,
@@ -178,7 +178,8 @@ impl<'m> Reading<'m> {
 
     /// Stores a line that is not a row.
     fn skip_line(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
-        self.budget.take(2 * line.len() as u64 + 64, 1, "")?;
+        self.budget
+            .take(2 * line.len() as u64 + 64, 1, NO_VARIABLE)?;
         self.skipped.push(NumberedLine {
             number,
             text: line.to_owned(),
@@ -193,13 +194,17 @@ impl<'m> Reading<'m> {
     fn take_row(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
         let is_first = self.lines.is_empty();
         // An empty last cell is a column, not a trailing separator, if the heading names it.
-        if is_first && self.layout.trailing && names_one_more_column(&self.skipped, self.layout) {
+        if is_first
+            && self.layout.has_trailing_separator
+            && names_one_more_column(&self.skipped, self.layout)
+        {
             self.layout.columns += 1;
-            self.layout.trailing = false;
+            self.layout.has_trailing_separator = false;
             self.columns.push(Vec::new());
         }
         // Take twice a row's memory: vectors grow by doubling.
-        self.budget.take(self.layout.columns as u64 + 1, 16, "")?;
+        self.budget
+            .take(self.layout.columns as u64 + 1, 16, NO_VARIABLE)?;
         let mut cells = self.layout.cells(line);
         let mut ends_empty = false;
         for (index, column) in self.columns.iter_mut().enumerate() {
@@ -208,7 +213,7 @@ impl<'m> Reading<'m> {
             };
             let Some(value) = cell_number(&cell, self.layout.decimal_comma) else {
                 let fault = self.no_number(index, &cell, line);
-                return Err(VariableFault::line("", number, fault));
+                return Err(VariableFault::line(NO_VARIABLE, number, fault));
             };
             ends_empty = cell.trim().is_empty();
             column.push(value);
@@ -254,11 +259,11 @@ impl<'m> Reading<'m> {
             found += 1;
             ends_empty = cell.trim().is_empty();
         }
-        if self.layout.trailing && ends_empty {
+        if self.layout.has_trailing_separator && ends_empty {
             found -= 1;
         }
         VariableFault::line(
-            "",
+            NO_VARIABLE,
             number,
             LineFault::ColumnCount {
                 found,

@@ -1,4 +1,5 @@
-//! Table of numbers in columns, with the names and units that a text or the rules give.
+//! Table of numbers in columns, with the names and units that a text gives, or the engineer's rules
+//! for the import of files.
 
 use crate::formats::reading_note::ReadingNote;
 use crate::formats::text::heading_units::name_and_unit;

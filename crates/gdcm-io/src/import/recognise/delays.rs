@@ -71,7 +71,7 @@ pub(super) fn timing_of(
             record.mark_used(field.name);
         }
     }
-    // Step 4 adds the split delays.
+    // Step 4.
     Ok(reading.finish())
 }
 
@@ -311,16 +311,17 @@ impl DelayReading {
         }
     }
 
+    /// Adds the split response delays to the input and output delays (step 4).
     fn finish(self) -> NotedTiming {
-        let (more_inputs, more_outputs) = match self.response_delays {
+        let (split_inputs_s, split_outputs_s) = match self.response_delays {
             Some(split) => (Some(split.inputs), Some(split.outputs)),
             None => (None, None),
         };
         NotedTiming {
             timing: Timing {
                 sample_time_s: self.sample_time_s,
-                input_delays_s: sum(self.input_delays_s, more_inputs),
-                output_delays_s: sum(self.output_delays_s, more_outputs),
+                input_delays_s: sum(self.input_delays_s, split_inputs_s),
+                output_delays_s: sum(self.output_delays_s, split_outputs_s),
             },
             notes: self.notes,
         }
@@ -358,14 +359,14 @@ fn store(
 
 /// Adds the delays given for channels and the delays split off from responses; `None` if all are
 /// zero.
-fn sum(own: Option<Vec<f64>>, more: Option<Vec<f64>>) -> Option<Vec<f64>> {
-    let delays: Vec<f64> = match (own, more) {
-        (Some(own), Some(more)) => own
+fn sum(given: Option<Vec<f64>>, split: Option<Vec<f64>>) -> Option<Vec<f64>> {
+    let delays: Vec<f64> = match (given, split) {
+        (Some(given), Some(split)) => given
             .iter()
-            .zip(&more)
-            .map(|(delay, added)| delay + added)
+            .zip(&split)
+            .map(|(given, split)| given + split)
             .collect(),
-        (own, more) => own.or(more)?,
+        (given, split) => given.or(split)?,
     };
     if delays.iter().all(|delay| *delay == 0.0) {
         return None;

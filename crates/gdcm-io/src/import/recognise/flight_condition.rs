@@ -1,4 +1,5 @@
 //! A model's flight condition and origin, from the fields beside it and in the enclosing records.
+//! The condition, with a name that the file gives to the model, is returned as [`Facts`].
 //!
 //! A quantity may be given as a field (`airspeed_kt`) or in a struct (`trim.airspeed_kt`), beside
 //! the model or in a [`Record`] (a group of fields) that encloses it. A list beside an array of

@@ -34,7 +34,7 @@ use self::record::Record;
 use self::state_space::{is_state_space, state_spaces};
 use self::suffixed_matrices::suffixed_models;
 use self::transfer_function::{is_transfer_function, transfer_function};
-use crate::formats::variables::Variable;
+use crate::formats::variables::{PageIndex, Variable};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
 pub(crate) use self::search::{Found, search};
@@ -55,7 +55,7 @@ const NEVER_UNUSED: [&str; 5] = [
 ];
 
 /// Finds all models among the variables of a file. If the shape of an array is ambiguous,
-/// `pages_first` decides whether its first or its last index selects the model.
+/// `page_index` decides whether its first or its last index selects the model.
 ///
 /// 1. Search the variables together, and inside each (`search`).
 /// 2. Add the models whose matrices have a common suffix; they come first.
@@ -63,10 +63,10 @@ const NEVER_UNUSED: [&str; 5] = [
 ///    without those of step 2, and elements of an array only once.
 pub(crate) fn recognise(
     variables: &[Variable],
-    pages_first: bool,
+    page_index: PageIndex,
     budget: &ReadingBudget<'_>,
 ) -> Result<Found<FoundModel>, VariableFault> {
-    let read = |record: &Record<'_>, variable: &str| read_models(record, variable, pages_first);
+    let read = |record: &Record<'_>, variable: &str| read_models(record, variable, page_index);
     // Step 1.
     let mut found = search(variables, budget, &read)?;
     // Step 2.
@@ -98,10 +98,10 @@ pub(crate) fn recognise(
 fn read_models(
     record: &Record<'_>,
     variable: &str,
-    pages_first: bool,
+    page_index: PageIndex,
 ) -> Option<Vec<Result<FoundModel, RecognitionFault>>> {
     if is_state_space(record) {
-        Some(state_spaces(record, variable, pages_first))
+        Some(state_spaces(record, variable, page_index))
     } else if is_response(record) {
         Some(vec![response(record, variable)])
     } else if is_transfer_function(record) {

@@ -49,7 +49,7 @@ fn model(gain: f64) -> Vec<(&'static str, Value)> {
 }
 
 fn recognise(variables: &[Variable]) -> Found<FoundModel> {
-    super::recognise(variables, false, &ReadingBudget::new(1 << 20)).unwrap()
+    super::recognise(variables, PageIndex::Last, &ReadingBudget::new(1 << 20)).unwrap()
 }
 
 fn gains(found: &Found<FoundModel>) -> Vec<(String, f64)> {
@@ -231,9 +231,9 @@ fn json(text: &str) -> Found<FoundModel> {
     match imported.contents {
         Contents::Variables {
             variables,
-            pages_first,
+            page_index,
             ..
-        } => super::recognise(&variables, pages_first, &budget).unwrap(),
+        } => super::recognise(&variables, page_index, &budget).unwrap(),
         Contents::Models(items, unused) => Found {
             items,
             unused: unused.iter().map(ToString::to_string).collect(),

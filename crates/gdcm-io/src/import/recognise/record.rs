@@ -1,9 +1,9 @@
 //! Named fields that belong together: a struct, an object, or a file's variables.
 //!
-//! A record knows the record that encloses it, whose labels and flight condition apply to its models,
-//! and remembers which of its fields were used, so that the others can be reported. MATLAB objects
-//! store the fields that other files hold directly in *parts* (`Data_`); in an array of models, a part
-//! has an element for each model, called *page*.
+//! A record knows the record that encloses it, whose labels and flight condition apply to its
+//! models, and remembers which of its fields were used, so that the others can be reported. MATLAB
+//! objects store the fields that other files hold directly in *parts* (`Data_`); in an array of
+//! models, a part has an element for each model, called *page*.
 
 use std::cell::{OnceCell, RefCell};
 use std::collections::{BTreeSet, HashMap};
@@ -58,7 +58,7 @@ pub(crate) struct Record<'v> {
     /// Class, if the record is a MATLAB or Octave object.
     pub(crate) class: Option<&'v str>,
     /// Whether the record is a struct or an object; false for the variables in a file.
-    pub(crate) stands_alone: bool,
+    pub(crate) is_struct_or_object: bool,
 }
 
 impl<'v> Record<'v> {
@@ -102,7 +102,7 @@ impl<'v> Record<'v> {
         Self {
             fields,
             class,
-            stands_alone: true,
+            is_struct_or_object: true,
             ..Self::default()
         }
     }

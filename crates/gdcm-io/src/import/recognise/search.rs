@@ -26,7 +26,7 @@ use super::recognition_fault::{FoundFault, RecognitionFault};
 use super::record::Record;
 use super::{DEEPEST, MOST_FOUND, STEPS};
 use crate::formats::variables::{StructArray, Value, Variable};
-use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::reading_budget::{NO_VARIABLE, ReadingBudget, VariableFault};
 
 /// Maximum number of variables listed as not recognised.
 const MOST_LISTED: usize = 20;
@@ -97,7 +97,7 @@ pub(crate) fn search<T>(
     // Step 1.
     let whole = Rc::new(Record::from_variables(variables));
     search.try_record(&whole, "")?;
-    let is_file_no_record = search.found.has_nothing();
+    let is_file_recognised = !search.found.has_nothing();
     let mut without_results = BTreeSet::new();
     // Step 2.
     for variable in variables {
@@ -105,17 +105,17 @@ pub(crate) fn search<T>(
             without_results.insert(variable.name.as_str());
         }
     }
-    // Step 3 for the variables; fields inside them are listed by `note_unused`.
+    // Step 3: the variables come first; fields inside them are already listed (`note_unused`).
     let mut found = search.found;
     found
         .unused
         .splice(0..0, unused_among(&whole, &without_results));
     // Step 4. Unless the variables together form a record, the file's arrays were not recognised
     // even if other variables were.
-    let is_nothing_found = found.has_nothing();
+    let is_anything_found = !found.has_nothing();
     for variable in variables {
         let is_array = matches!(variable.value, Value::Array(_));
-        let is_ignored = is_nothing_found || is_file_no_record && is_array;
+        let is_ignored = !is_anything_found || (is_array && !is_file_recognised);
         if is_ignored && found.ignored.len() < MOST_LISTED {
             found
                 .ignored
@@ -180,12 +180,12 @@ impl<T> Search<'_, T> {
                 self.descend_records(name, &object.records, Some(&object.class), levels, outer)
             }
             Value::Cell(cell) => {
-                let mut is_any_found = false;
+                let mut is_anything_found = false;
                 for (index, value) in cell.values.iter().enumerate() {
                     let name = format!("{name}{{{}}}", index + 1);
-                    is_any_found |= self.descend(&name, value, levels - 1, outer)?;
+                    is_anything_found |= self.descend(&name, value, levels - 1, outer)?;
                 }
-                Ok(is_any_found)
+                Ok(is_anything_found)
             }
             Value::Opaque { class, why } => {
                 self.add_fault(FoundFault {
@@ -207,7 +207,7 @@ impl<T> Search<'_, T> {
         levels: usize,
         outer: &Rc<Record<'v>>,
     ) -> Result<bool, VariableFault> {
-        let mut is_any_found = false;
+        let mut is_anything_found = false;
         let count = if records.fields.is_empty() {
             0
         } else {
@@ -220,7 +220,7 @@ impl<T> Search<'_, T> {
                 format!("{name}({})", index + 1)
             };
             if self.try_pages(&name, records, index, class, outer)? {
-                is_any_found = true;
+                is_anything_found = true;
                 continue;
             }
             let inner = Rc::new(Record::from_struct(records, index).inside(outer));
@@ -232,11 +232,11 @@ impl<T> Search<'_, T> {
                 }
             }
             if without_results.len() < inner.fields().count() {
-                is_any_found = true;
+                is_anything_found = true;
                 self.note_unused(&name, &unused_among(&inner, &without_results))?;
             }
         }
-        Ok(is_any_found)
+        Ok(is_anything_found)
     }
 
     /// Adds the models or flight records in element `index` of a struct array, which may itself be
@@ -250,7 +250,7 @@ impl<T> Search<'_, T> {
         outer: &Rc<Record<'v>>,
     ) -> Result<bool, VariableFault> {
         let pages = Record::page_count(records, index);
-        let mut is_any_known = false;
+        let mut is_anything_found = false;
         for page in 0..pages {
             let name = if pages == 1 {
                 name.to_owned()
@@ -259,11 +259,11 @@ impl<T> Search<'_, T> {
             };
             let record = Record::from_object(records, index, class, page).inside(outer);
             if self.try_record(&record, &name)? {
-                is_any_known = true;
+                is_anything_found = true;
                 self.note_unused(&name, &record.unused())?;
             }
         }
-        Ok(is_any_known)
+        Ok(is_anything_found)
     }
 
     /// Adds the paths to a variable's unused fields.
@@ -274,7 +274,8 @@ impl<T> Search<'_, T> {
             } else {
                 format!("{variable}.{name}")
             };
-            self.budget.take(path.len() as u64 + PATH_BYTES, 1, "")?;
+            self.budget
+                .take(path.len() as u64 + PATH_BYTES, 1, NO_VARIABLE)?;
             if self.found.unused.len() < MOST_PIECES {
                 self.found.unused.push(path);
             }
@@ -284,7 +285,7 @@ impl<T> Search<'_, T> {
 
     fn add_fault(&mut self, fault: FoundFault) -> Result<(), VariableFault> {
         let length = fault.to_string().len() as u64;
-        self.budget.take(length + FAULT_BYTES, 1, "")?;
+        self.budget.take(length + FAULT_BYTES, 1, NO_VARIABLE)?;
         self.found.faults.push(fault);
         Ok(())
     }

@@ -18,15 +18,15 @@ use super::flight_condition::{Page, facts_of, origin_of};
 use super::labels::{inputs_of, outputs_of, states_of};
 use super::recognition_fault::RecognitionFault;
 use super::record::Record;
-use super::values::{PAGES_LAST, PagedShape, array_of, matrix_of, page_of};
+use super::values::{PagedShape, array_of, matrix_of, page_of};
 use crate::files::model_collection::bare_draft;
 use crate::formats::reading_note::{ReadingNote, note_texts};
-use crate::formats::variables::{Array, Value};
+use crate::formats::variables::{Array, PageIndex, Value};
 
 /// Matrix name: a capital letter; in structs and objects, a small letter is accepted too.
 #[derive(Clone, Copy)]
 struct MatrixName {
-    large: &'static str,
+    capital: &'static str,
     small: &'static str,
 }
 
@@ -37,22 +37,22 @@ impl MatrixName {
     const D: Self = Self::new("D", "d");
     const E: Self = Self::new("E", "e");
 
-    const fn new(large: &'static str, small: &'static str) -> Self {
-        Self { large, small }
+    const fn new(capital: &'static str, small: &'static str) -> Self {
+        Self { capital, small }
     }
 
     /// Returns the matrix value in a record and marks it as used; `None` if there is none.
     fn value<'v>(self, record: &Record<'v>) -> Option<&'v Value> {
-        let mut value = record.exact(self.large);
-        if value.is_none() && record.stands_alone {
+        let mut value = record.exact(self.capital);
+        if value.is_none() && record.is_struct_or_object {
             value = record.exact(self.small);
         }
         value
     }
 
     fn is_in(self, record: &Record<'_>) -> bool {
-        let mut value = record.peek(self.large);
-        if value.is_none() && record.stands_alone {
+        let mut value = record.peek(self.capital);
+        if value.is_none() && record.is_struct_or_object {
             value = record.peek(self.small);
         }
         value.and_then(array_of).is_some()
@@ -66,12 +66,12 @@ pub(super) fn is_state_space(record: &Record<'_>) -> bool {
 
 /// Reads the model that the matrices in `record` form, or each model in an array: `A(:,:,k)` in
 /// MATLAB, `A[k,:,:]` in NumPy. The first index selects the model if only then the shapes of A, B
-/// and C fit, the last index if they do not fit with the first, and `pages_first` decides if both
+/// and C fit, the last index if they do not fit with the first, and `page_index` decides if both
 /// fit.
 pub(super) fn state_spaces(
     record: &Record<'_>,
     variable: &str,
-    pages_first: bool,
+    page_index: PageIndex,
 ) -> Vec<Result<FoundModel, RecognitionFault>> {
     let array = |name: MatrixName| name.value(record).and_then(array_of);
     let (Some(a), Some(b), Some(c)) = (
@@ -84,31 +84,34 @@ pub(super) fn state_spaces(
     if [a, b, c].iter().all(|array| array.shape.len() < 3) {
         return vec![state_space(record, variable, Page::ONLY, &matrix_of)];
     }
-    let pages_first = match (shapes_fit(a, b, c, false), shapes_fit(a, b, c, true)) {
-        (true, true) => pages_first,
-        (_, fits_first) => fits_first,
+    let page_index = match (
+        shapes_fit(a, b, c, PageIndex::First),
+        shapes_fit(a, b, c, PageIndex::Last),
+    ) {
+        (true, true) => page_index,
+        (true, false) => PageIndex::First,
+        (false, _) => PageIndex::Last,
     };
-    let count = PagedShape::new(a, pages_first).pages;
+    let count = PagedShape::new(a, page_index).pages;
     let mut models = Vec::with_capacity(count);
     for index in 0..count {
-        let place = if pages_first {
-            format!("{variable}[{index},:,:]")
-        } else {
-            format!("{variable}(:,:,{})", index + 1)
+        let place = match page_index {
+            PageIndex::First => format!("{variable}[{index},:,:]"),
+            PageIndex::Last => format!("{variable}(:,:,{})", index + 1),
         };
         let page = Page { index, count };
-        let read = |name: &str, value: &Value| matrix_in_page(name, value, page, pages_first);
+        let read = |name: &str, value: &Value| matrix_in_page(name, value, page, page_index);
         models.push(state_space(record, &place, page, &read));
     }
     models
 }
 
-/// Returns whether A, B and C have consistent dimensions and model counts if the first index
-/// (`pages_first`) or the last index selects the model.
-fn shapes_fit(a: &Array, b: &Array, c: &Array, pages_first: bool) -> bool {
-    let a = PagedShape::new(a, pages_first);
-    let b = PagedShape::new(b, pages_first);
-    let c = PagedShape::new(c, pages_first);
+/// Returns whether A, B and C have consistent dimensions and model counts if `page_index` selects
+/// the model.
+fn shapes_fit(a: &Array, b: &Array, c: &Array, page_index: PageIndex) -> bool {
+    let a = PagedShape::new(a, page_index);
+    let b = PagedShape::new(b, page_index);
+    let c = PagedShape::new(c, page_index);
     let counts_fit = [b.pages, c.pages]
         .iter()
         .all(|pages| *pages == a.pages || *pages == 1);
@@ -120,12 +123,12 @@ fn matrix_in_page(
     name: &str,
     value: &Value,
     page: Page,
-    pages_first: bool,
+    page_index: PageIndex,
 ) -> Result<DMatrix<f64>, RecognitionFault> {
     match array_of(value) {
-        Some(array) if array.shape.len() < 3 => page_of(name, array, 0, PAGES_LAST),
-        Some(array) if page.index < PagedShape::new(array, pages_first).pages => {
-            page_of(name, array, page.index, pages_first)
+        Some(array) if array.shape.len() < 3 => page_of(name, array, 0, PageIndex::Last),
+        Some(array) if page.index < PagedShape::new(array, page_index).pages => {
+            page_of(name, array, page.index, page_index)
         }
         _ => Err(RecognitionFault::PageCount {
             name: name.to_owned(),
@@ -145,7 +148,7 @@ fn optional_matrix(
     read: ReadMatrix<'_>,
 ) -> Result<Option<DMatrix<f64>>, RecognitionFault> {
     match name.value(record) {
-        Some(value) => Ok(Some(read(name.large, value)?)),
+        Some(value) => Ok(Some(read(name.capital, value)?)),
         None => Ok(None),
     }
 }
@@ -157,7 +160,7 @@ fn required_matrix(
 ) -> Result<DMatrix<f64>, RecognitionFault> {
     match optional_matrix(record, name, read)? {
         Some(matrix) => Ok(matrix),
-        None => Err(RecognitionFault::MissingMatrix { name: name.large }),
+        None => Err(RecognitionFault::MissingMatrix { name: name.capital }),
     }
 }
 

@@ -22,7 +22,7 @@ use super::search::{Found, Recognise};
 use super::state_space::is_state_space;
 use super::values::{Field, matrix_of};
 use crate::formats::variables::{Value, Variable};
-use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::reading_budget::{NO_VARIABLE, ReadingBudget, VariableFault};
 
 const MATRICES: [&str; 5] = ["A", "B", "C", "D", "E"];
 
@@ -49,16 +49,16 @@ pub(super) fn suffixed_models(
         .filter_map(|variable| variable.name.strip_prefix('A'))
         .filter(|suffix| !suffix.is_empty() && by_name.contains_key(format!("B{suffix}").as_str()))
         .collect();
-    // Delays that apply to one model only, by their suffix.
-    let delays = delays_with_suffix(variables, &suffixes.iter().copied().collect());
+    // Delays that apply to one model only.
+    let suffixed_delays = delays_with_suffix(variables, &suffixes.iter().copied().collect());
     for suffix in suffixes {
-        budget.work(STEPS, "")?;
+        budget.work(STEPS, NO_VARIABLE)?;
         let mut fields = matrices_with_suffix(&by_name, suffix);
         if !is_state_space(&Record::from_fields(fields.iter().copied())) {
             continue;
         }
-        budget.work(STEPS * variables.len() as u64, "")?;
-        fields.extend(fields_beside(variables, suffix, &delays));
+        budget.work(STEPS * variables.len() as u64, NO_VARIABLE)?;
+        fields.extend(fields_beside(variables, suffix, &suffixed_delays));
         // Step 4.
         let record = Record::from_fields(fields.into_iter()).shared();
         let name = suffix.trim_start_matches('_');
@@ -67,7 +67,8 @@ pub(super) fn suffixed_models(
             .add(name, read(&record, name).unwrap_or_default());
         for field in record.fields() {
             if record.is_used(field.name) {
-                // In the file, the name has the suffix only if it was removed above.
+                // In the file, the variable has this name, or this name with the suffix, which was
+                // removed from the model's matrices and delays.
                 models.used.insert(field.name.to_owned());
                 models.used.insert(format!("{}{suffix}", field.name));
             }
@@ -107,7 +108,7 @@ fn matrices_with_suffix<'v>(by_name: &HashMap<&str, &'v Value>, suffix: &str) ->
 fn fields_beside<'v>(
     variables: &'v [Variable],
     suffix: &str,
-    delays: &BTreeSet<&str>,
+    suffixed_delays: &BTreeSet<&str>,
 ) -> Vec<Field<'v>> {
     let mut fields = Vec::new();
     for variable in variables {
@@ -115,7 +116,7 @@ fn fields_beside<'v>(
             continue;
         }
         let mut name = variable.name.as_str();
-        if delays.contains(name) {
+        if suffixed_delays.contains(name) {
             match name.strip_suffix(suffix) {
                 Some(stem) if is_delay(stem) => name = stem,
                 _ => continue,

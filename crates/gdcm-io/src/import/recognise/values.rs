@@ -3,7 +3,7 @@
 use nalgebra::{Complex, DMatrix};
 
 use super::recognition_fault::RecognitionFault;
-use crate::formats::variables::{Array, Value};
+use crate::formats::variables::{Array, PageIndex, Value};
 
 /// A named value: a variable in a file, or a field in a struct.
 #[derive(Clone, Copy, Debug)]
@@ -38,7 +38,7 @@ pub(super) fn matrix_of(name: &str, value: &Value) -> Result<DMatrix<f64>, Recog
     if array.shape.iter().skip(2).product::<usize>() > 1 {
         return Err(kind_fault(name, "a matrix", value.words()));
     }
-    page_of(name, array, 0, PAGES_LAST)
+    page_of(name, array, 0, PageIndex::Last)
 }
 
 fn kind_fault(name: &str, expected: &'static str, found: String) -> RecognitionFault {
@@ -48,9 +48,6 @@ fn kind_fault(name: &str, expected: &'static str, found: String) -> RecognitionF
         found,
     }
 }
-
-/// `pages_first` for an array whose last index selects the page, as in MATLAB.
-pub(super) const PAGES_LAST: bool = false;
 
 /// Shape of an array that holds several matrices with equal dimensions, called pages.
 #[derive(Clone, Copy, Debug)]
@@ -65,11 +62,11 @@ pub(super) struct PagedShape {
 }
 
 impl PagedShape {
-    /// Determines an array's shape. In an array with three dimensions, the first index selects the
-    /// matrix if `pages_first`; otherwise all indices after the second do.
-    pub(super) fn new(array: &Array, pages_first: bool) -> Self {
+    /// Determines an array's shape. The first of three indices selects the matrix if `page_index`
+    /// is [`PageIndex::First`]; otherwise all indices after the second do.
+    pub(super) fn new(array: &Array, page_index: PageIndex) -> Self {
         let shape = &array.shape;
-        if shape.len() == 3 && pages_first {
+        if shape.len() == 3 && page_index == PageIndex::First {
             return Self {
                 pages: shape[0],
                 rows: shape[1],
@@ -97,7 +94,7 @@ pub(super) fn page_of(
     name: &str,
     array: &Array,
     page: usize,
-    pages_first: bool,
+    page_index: PageIndex,
 ) -> Result<DMatrix<f64>, RecognitionFault> {
     let PagedShape {
         rows,
@@ -105,7 +102,7 @@ pub(super) fn page_of(
         page_step,
         number_step,
         ..
-    } = PagedShape::new(array, pages_first);
+    } = PagedShape::new(array, page_index);
     if has_imaginary_part(array) {
         return Err(kind_fault(
             name,

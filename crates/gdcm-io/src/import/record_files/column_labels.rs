@@ -2,7 +2,7 @@
 //! fields beside it.
 //!
 //! A [`Record`] is a group of fields, such as a struct, that may hold a flight record; it marks the
-//! fields that are used. Names of fields are compared folded: without case, marks and blanks.
+//! fields that are used. Names of fields are compared *folded*: without case, marks and blanks.
 
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::names::channel_alias::folded_name;
@@ -13,7 +13,7 @@ use crate::import::recognise::labels::label_of;
 use crate::import::recognise::record::Record;
 use crate::import::recognise::values::texts_of;
 
-/// Fields that hold the inputs, by name without case and underscores.
+/// Fields that hold the inputs, by folded name, as in all lists below.
 const INPUTS: [&str; 9] = [
     "u",
     "in",
@@ -25,7 +25,7 @@ const INPUTS: [&str; 9] = [
     "controls",
     "uin",
 ];
-/// Fields that hold the outputs, by name without case and underscores.
+/// Fields that hold the outputs.
 const OUTPUTS: [&str; 9] = [
     "y",
     "out",
@@ -174,16 +174,16 @@ fn side_of(name: &str, count: usize) -> Option<ChannelSide> {
     }
 }
 
-/// Returns the strings in the first field with one of these names (without case and underscores);
-/// `None` unless there are `count`.
-fn list_beside<K: AsRef<str>>(
+/// Returns the strings in the first field with one of these folded names; `None` unless there are
+/// `count`.
+fn list_beside<N: AsRef<str>>(
     record: &Record<'_>,
-    keys: &[K],
+    names: &[N],
     count: usize,
 ) -> Option<Vec<String>> {
     let field = record.fields().find(|field| {
         let folded = folded_name(field.name);
-        keys.iter().any(|key| key.as_ref() == folded)
+        names.iter().any(|name| name.as_ref() == folded)
     })?;
     let texts = texts_of(field.value)?;
     if texts.len() == count {

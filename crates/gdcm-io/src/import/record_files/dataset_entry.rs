@@ -14,9 +14,9 @@ pub fn relative_entry(
     requested: &[PathBuf],
     dataset: &Path,
 ) -> ConditionRecord {
-    if let Some(place) = place_of_record(&entry.file, requested) {
-        let folder = relative_folder(place.parent().unwrap_or(Path::new(".")), dataset);
-        let name = match place.file_name() {
+    if let Some(path) = path_of_record(&entry.file, requested) {
+        let folder = relative_folder(path.parent().unwrap_or(Path::new(".")), dataset);
+        let name = match path.file_name() {
             Some(name) => name.to_string_lossy().into_owned(),
             None => String::new(),
         };
@@ -32,7 +32,7 @@ pub fn relative_entry(
 /// Finds the path of a record's file: the first of `requested` that has this file name, or that is
 /// a folder with this file. A record joined from topics in several files has an empty file name;
 /// its path is the first requested folder or, if only files are requested, the first file's folder.
-fn place_of_record(file: &str, requested: &[PathBuf]) -> Option<PathBuf> {
+fn path_of_record(file: &str, requested: &[PathBuf]) -> Option<PathBuf> {
     for path in requested {
         let is_file = path
             .file_name()
@@ -40,6 +40,7 @@ fn place_of_record(file: &str, requested: &[PathBuf]) -> Option<PathBuf> {
         if is_file {
             return Some(path.clone());
         }
+        // With an empty file name, this is the folder itself.
         let in_folder = path.join(file);
         if path.is_dir() && in_folder.exists() {
             return Some(in_folder);
@@ -64,11 +65,11 @@ mod tests {
         let file = other.join("sweep.csv");
         std::fs::write(&file, "").unwrap();
         let requested = [empty.clone(), file.clone()];
-        assert_eq!(place_of_record("sweep.csv", &requested), Some(file.clone()));
+        assert_eq!(path_of_record("sweep.csv", &requested), Some(file.clone()));
         let requested = [empty.clone(), other];
-        assert_eq!(place_of_record("sweep.csv", &requested), Some(file));
-        assert_eq!(place_of_record("missing.csv", &requested), None);
+        assert_eq!(path_of_record("sweep.csv", &requested), Some(file));
+        assert_eq!(path_of_record("missing.csv", &requested), None);
         // A record joined from several files belongs to a folder.
-        assert_eq!(place_of_record("", &requested), Some(empty.join("")));
+        assert_eq!(path_of_record("", &requested), Some(empty.join("")));
     }
 }

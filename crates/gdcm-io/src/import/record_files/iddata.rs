@@ -101,15 +101,15 @@ fn experiment(
     variable: String,
 ) -> Result<Columns, RecognitionFault> {
     // Step 1.
-    let sample_count = match samples_of(output, None) {
-        Some(samples) => Some(samples.rows),
-        None => return Err(RecognitionFault::NoOutputData),
+    let Some(samples) = samples_of(output, None) else {
+        return Err(RecognitionFault::NoOutputData);
     };
+    let sample_count = samples.rows;
     // Step 2.
     let mut columns = Vec::new();
     if let Some(instants) = value_for_experiment(record, &["SamplingInstants"], index)
-        && let Some(stamps) = samples_of(instants, sample_count)
-        && Some(stamps.rows) == sample_count
+        && let Some(stamps) = samples_of(instants, Some(sample_count))
+        && stamps.rows == sample_count
         && stamps.columns.len() == 1
     {
         let unit = record.get(&["TimeUnit"]).and_then(first_text_of);
@@ -124,7 +124,7 @@ fn experiment(
     // Step 4.
     if columns
         .iter()
-        .any(|column| Some(column.values.len()) != sample_count)
+        .any(|column| column.values.len() != sample_count)
     {
         return Err(RecognitionFault::SampleCounts);
     }
@@ -142,7 +142,7 @@ fn side_columns(
     record: &Record<'_>,
     fields: &SideFields,
     index: usize,
-    sample_count: Option<usize>,
+    sample_count: usize,
 ) -> Vec<RecordColumn> {
     let names = record
         .get(&fields.names)
@@ -153,7 +153,7 @@ fn side_columns(
         .and_then(texts_of)
         .unwrap_or_default();
     let Some(samples) = value_for_experiment(record, &fields.data, index)
-        .and_then(|value| samples_of(value, sample_count))
+        .and_then(|value| samples_of(value, Some(sample_count)))
     else {
         return Vec::new();
     };

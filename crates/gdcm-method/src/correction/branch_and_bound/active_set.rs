@@ -10,11 +10,12 @@
 //! Hessian before it. A bound is *active* if it fixes its scale; a scale without an active bound is
 //! *free*. Source: Nocedal & Wright, "Numerical Optimization", 2nd ed. 2006, 16.5.
 
-use super::effort::Effort;
+use super::effort::{Effort, MULTIPLY_ADDS, cholesky_work};
 use super::expansion::{Expansion, ScaleBox};
 
-/// Ridge on the Hessian's diagonal, relative to its largest entry; far below any curvature that
-/// matters.
+/// Ridge added to the Hessian's diagonal, relative to its largest entry: it makes a Hessian
+/// definite that is singular only because the objective does not depend on a common shift of some
+/// scales. It is far below any curvature that matters.
 const RIDGE: f64 = 1e-12;
 /// Slopes below this, relative to the largest, are rounding errors.
 const SLOPE_ROUNDING: f64 = 1e-14;
@@ -43,9 +44,9 @@ pub(super) struct QuadraticModel {
     /// Lower Cholesky factor for the free scales' Hessian. Its rows and columns are places in
     /// `free`, not scales; each row has memory for all scales.
     factor: Vec<f64>,
-    /// Remaining step to the unconstrained minimum over the free scales (box ignored), by scale;
+    /// Move from `step` to the minimum over the free scales, without regard to the box; by scale,
     /// undefined for scales that are not free.
-    move_to: Vec<f64>,
+    newton_move: Vec<f64>,
 }
 
 impl QuadraticModel {
@@ -60,7 +61,7 @@ impl QuadraticModel {
             free: Vec::with_capacity(scales),
             is_free: vec![false; scales],
             factor: vec![0.0; scales * scales],
-            move_to: vec![0.0; scales],
+            newton_move: vec![0.0; scales],
         }
     }
 
@@ -76,11 +77,11 @@ impl QuadraticModel {
     /// primal active-set method, which is exact and finite.
     ///
     /// ```text
-    /// 1  free: every scale, unless its slope pushes it against its bound
+    /// 1  free: every scale, unless its slope presses it against its bound
     /// 2  move to the minimum over the free scales, as far as the box allows
-    /// 3  if a bound ends the move, make it active and repeat from 2
-    /// 4  release the active bound with the largest inward slope and repeat from 2; stop if there is none,
-    ///    or after 8 n + 8 passes, with the decrease so far
+    /// 3  if a bound ends the move: make it active, repeat from 2
+    /// 4  otherwise, of the active bounds from which the model decreases into the box, release the
+    ///    steepest and repeat from 2; stop if there is none, or after 8 n + 8 passes
     /// ```
     ///
     /// Returns the decrease, or `None` if the effort is stopped or `H`, restricted to the free
@@ -109,16 +110,16 @@ impl QuadraticModel {
             }
             // Step 2
             self.solve_free(hessian, ridge)?;
-            let allowed = self.longest_step();
+            let allowed = self.allowed_move();
             for &scale in &self.free {
-                self.step[scale] += allowed.fraction * self.move_to[scale];
+                self.step[scale] += allowed.fraction * self.newton_move[scale];
             }
             self.update_slope(gradient, hessian);
             // Steps 3 and 4
             if let Some(blocking) = allowed.blocking {
                 self.step[blocking.scale] = blocking.end;
                 self.is_free[blocking.scale] = false;
-            } else if let Some(scale) = self.worst_active_bound() {
+            } else if let Some(scale) = self.steepest_active_bound() {
                 self.is_free[scale] = true;
             } else {
                 break;
@@ -131,14 +132,14 @@ impl QuadraticModel {
     }
 
     /// Returns the work per pass, in term evaluations: a Cholesky factorisation for the free
-    /// scales, and products with the whole Hessian.
+    /// scales, and the Hessian's product with the step.
     fn work(&self) -> u64 {
         let free = self.is_free.iter().filter(|is_free| **is_free).count() as u64;
-        1 + free * free * free / 96 + (self.scales * self.scales) as u64 / 16
+        1 + cholesky_work(free) + (self.scales * self.scales) as u64 / MULTIPLY_ADDS
     }
 
-    /// Lists the free scales in `free`, and computes `move_to = -H_ff^-1 slope_f` over them, where
-    /// `H_ff` is their Hessian. `None` if `H_ff` is not positive definite.
+    /// Lists the free scales in `free`, and computes `newton_move = -H_ff^-1 slope_f` over them,
+    /// where `H_ff` is their Hessian. `None` if `H_ff` is not positive definite.
     fn solve_free(&mut self, hessian: &[f64], ridge: f64) -> Option<()> {
         self.free.clear();
         self.free
@@ -179,31 +180,34 @@ impl QuadraticModel {
         Some(())
     }
 
-    /// Solves `factor factor' move_to = -slope` for the free scales, forwards, then backwards.
+    /// Solves `factor factor' newton_move = -slope` for the free scales, forwards, then backwards.
     fn substitute(&mut self) {
         let size = self.free.len();
         for row in 0..size {
             let mut entry = -self.slope[self.free[row]];
             for inner in 0..row {
-                entry -= self.factor[row * self.scales + inner] * self.move_to[self.free[inner]];
+                entry -=
+                    self.factor[row * self.scales + inner] * self.newton_move[self.free[inner]];
             }
-            self.move_to[self.free[row]] = entry / self.factor[row * self.scales + row];
+            self.newton_move[self.free[row]] = entry / self.factor[row * self.scales + row];
         }
         for row in (0..size).rev() {
-            let mut entry = self.move_to[self.free[row]];
+            let mut entry = self.newton_move[self.free[row]];
             for inner in row + 1..size {
-                entry -= self.factor[inner * self.scales + row] * self.move_to[self.free[inner]];
+                entry -=
+                    self.factor[inner * self.scales + row] * self.newton_move[self.free[inner]];
             }
-            self.move_to[self.free[row]] = entry / self.factor[row * self.scales + row];
+            self.newton_move[self.free[row]] = entry / self.factor[row * self.scales + row];
         }
     }
 
-    /// Returns how far `move_to` stays inside the box, as a fraction, and the bound that limits it.
-    fn longest_step(&self) -> AllowedMove {
+    /// Returns the fraction of `newton_move` that stays inside the box, and the bound that limits
+    /// it.
+    fn allowed_move(&self) -> AllowedMove {
         let mut fraction = 1.0;
         let mut blocking = None;
         for &scale in &self.free {
-            let target = self.step[scale] + self.move_to[scale];
+            let target = self.step[scale] + self.newton_move[scale];
             let end = if target < self.low[scale] {
                 self.low[scale]
             } else if target > self.high[scale] {
@@ -211,8 +215,9 @@ impl QuadraticModel {
             } else {
                 continue;
             };
-            let allowed = ((end - self.step[scale]) / self.move_to[scale]).max(0.0);
-            // A bound that is exceeded only by rounding still ends the move.
+            let allowed = ((end - self.step[scale]) / self.newton_move[scale]).max(0.0);
+            // `is_none`: if rounding raises `allowed` to 1 although the target is outside the box,
+            // the bound still ends the move.
             if allowed < fraction || blocking.is_none() {
                 fraction = allowed.min(fraction);
                 blocking = Some(Blocking { scale, end });
@@ -232,29 +237,31 @@ impl QuadraticModel {
 
     /// Returns the scale on an active bound from which the model decreases most steeply into the
     /// box; `None` if there is none, so that the minimum is reached.
-    fn worst_active_bound(&self) -> Option<usize> {
+    fn steepest_active_bound(&self) -> Option<usize> {
         let largest_slope = self
             .slope
             .iter()
             .fold(0.0_f64, |most, slope| most.max(slope.abs()));
-        let mut worst = None;
-        // Smaller slopes are rounding errors.
+        let mut steepest = None;
+        // Descents below this are rounding errors.
         let mut greatest = SLOPE_ROUNDING * largest_slope;
         for scale in 0..self.scales {
             if self.is_free[scale] || self.low[scale] >= self.high[scale] {
                 continue;
             }
-            let inward = if self.step[scale] <= self.low[scale] {
+            // Decrease per unit of an inward step: upwards from a lower bound, downwards from an
+            // upper bound.
+            let descent = if self.step[scale] <= self.low[scale] {
                 -self.slope[scale]
             } else {
                 self.slope[scale]
             };
-            if inward > greatest {
-                greatest = inward;
-                worst = Some(scale);
+            if descent > greatest {
+                greatest = descent;
+                steepest = Some(scale);
             }
         }
-        worst
+        steepest
     }
 }
 

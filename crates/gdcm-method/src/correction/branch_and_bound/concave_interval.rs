@@ -1,8 +1,8 @@
 //! Interval on which a sum of two exponentials is concave.
 //!
 //! ```text
-//! f(u) = R1 (e^u - c1)^2 + R2 (e^-u - c2)^2
-//! f''(u) = 2 / z^2 (2 R1 z^4 - R1 c1 z^3 - R2 c2 z + 2 R2),   z = e^u
+//! f(u)   = R1 (e^u - c1)^2 + R2 (e^-u - c2)^2
+//! f''(u) = 2 q(z) / z^2,   q(z) = 2 R1 z^4 - R1 c1 z^3 - R2 c2 z + 2 R2,   z = e^u
 //! ```
 //!
 //! `u` or `-u` is the logarithm of a gain product up to a constant. `R1`, `c1` are the `forward`
@@ -12,15 +12,15 @@
 use super::exponential::Exponential;
 use crate::correction::interval::Interval;
 
-/// Maximum iterations for the quartic's minimum; a few are typical.
+/// Maximum iterations for the minimum of the quartic `q`; a few are typical.
 const NEWTON_STEPS: usize = 60;
-/// Relative step at which the search for the quartic's minimum ends: rounding level.
+/// Relative step at which the search for this minimum ends: rounding level.
 const NEWTON_ROUNDING: f64 = 1e-15;
-/// Maximum number of times that a bracket's outer end is moved to twice its distance from the inner
-/// end.
+/// Maximum number of times that a bracket's outer end is moved to twice its distance from the
+/// bracket's first inner end.
 const DOUBLINGS: usize = 40;
-/// Relative bracket width at which the bisection ends. The bracket's convex side is returned, so
-/// that the remaining width only makes the concave interval slightly too wide.
+/// Relative bracket width at which the bisection ends. The bracket's outer end is returned, so that
+/// the remaining width only makes the concave interval slightly too wide.
 const BRACKET_WIDTH: f64 = 1e-12;
 
 /// Finds the only interval on which the exponentials' sum is concave, widened slightly; `None` if
@@ -30,14 +30,14 @@ const BRACKET_WIDTH: f64 = 1e-12;
 /// both exponentials zero   none
 /// only forward             -infinity to its inflection ln(c1 / 2)
 /// only backward            its inflection -ln(c2 / 2) to infinity
-/// both                     1  u at which the curvature's quartic is minimal
-///                          2  none, if the quartic is positive there by more than its rounding error
-///                          3  each end by bisection, between that u and a point where the sum is surely convex
+/// both                     1  u at which the quartic q is minimal
+///                          2  none, if q is positive there by more than its rounding error
+///                          3  each end by bisection, between that u and a point outside, where
+///                             the sum is surely convex
 /// ```
 ///
-/// With `z = e^u` the curvature times `z^2 / 2` is the quartic
-/// `2 R1 z^4 - R1 c1 z^3 - R2 c2 z + 2 R2`. Its coefficients change sign twice, so that it has
-/// either no or two positive roots (Descartes); its derivative has a single positive root.
+/// The coefficients of `q` change sign twice, so that `q` has either no or two positive roots
+/// (Descartes); its derivative has a single positive root.
 pub(super) fn concave_interval(forward: &Exponential, backward: &Exponential) -> Option<Interval> {
     // Far above the rounding error in a logarithm up to 83, twice the widest range of a gain (-180
     // to 180 dB).
@@ -59,7 +59,7 @@ pub(super) fn concave_interval(forward: &Exponential, backward: &Exponential) ->
         (false, false) => {}
     }
     // Step 1
-    let deepest = quartic_least(forward, backward).ln();
+    let deepest = quartic_minimum(forward, backward).ln();
     // Step 2
     if is_surely_convex(forward, backward, deepest) {
         return None;
@@ -75,8 +75,7 @@ pub(super) fn concave_interval(forward: &Exponential, backward: &Exponential) ->
     })
 }
 
-/// Returns whether [`concave_interval`]'s quartic, divided by `z^2`, is positive at `u` by more
-/// than its rounding error.
+/// Returns whether `q(z) / z^2` is positive at `u` by more than its rounding error.
 fn is_surely_convex(forward: &Exponential, backward: &Exponential, u: f64) -> bool {
     let z = u.exp();
     let parts = [
@@ -85,15 +84,16 @@ fn is_surely_convex(forward: &Exponential, backward: &Exponential, u: f64) -> bo
         -backward.weight * backward.centre / z,
         2.0 * backward.weight / (z * z),
     ];
+    // Each part is a product of up to three rounded factors, with its own rounding.
     let relative = 4.0 * forward.relative_error(u).max(backward.relative_error(u));
     let least: f64 = parts.iter().map(|part| part - relative * part.abs()).sum();
     least > 0.0
 }
 
-/// Returns the positive `z` at which [`concave_interval`]'s quartic is minimal: the root of `8 R1
-/// z^3 - 3 R1 c1 z^2 - R2 c2`, found by Newton's method from the right, where the cubic is convex
-/// and increasing.
-fn quartic_least(forward: &Exponential, backward: &Exponential) -> f64 {
+/// Returns the positive `z` at which `q` is minimal: the root of its derivative
+/// `8 R1 z^3 - 3 R1 c1 z^2 - R2 c2`, found by Newton's method from the right, where this cubic is
+/// convex and increasing.
+fn quartic_minimum(forward: &Exponential, backward: &Exponential) -> f64 {
     let square = 3.0 * forward.centre / 8.0;
     let constant = backward.weight * backward.centre / (8.0 * forward.weight);
     let mut z = square + constant.cbrt();
@@ -108,24 +108,24 @@ fn quartic_least(forward: &Exponential, backward: &Exponential) -> f64 {
 }
 
 /// Finds the concave interval's end between `outside` and `inside` by bisection, and returns the
-/// final bracket's convex side. Requires that the sum is not certainly convex at `inside`;
-/// `outside` is moved further away until the sum is certainly convex there.
+/// final bracket's outer end, where the sum is surely convex. Requires that it is not surely convex
+/// at `inside`; `outside` is moved further away until it is surely convex there.
 fn convex_end(forward: &Exponential, backward: &Exponential, outside: f64, inside: f64) -> f64 {
-    let mut convex = outside;
-    let mut other = inside;
+    let mut outer = outside;
+    let mut inner = inside;
     for _ in 0..DOUBLINGS {
-        if is_surely_convex(forward, backward, convex) {
+        if is_surely_convex(forward, backward, outer) {
             break;
         }
-        convex += convex - inside;
+        outer += outer - inside;
     }
-    while (convex - other).abs() > BRACKET_WIDTH * (1.0 + convex.abs()) {
-        let middle = 0.5 * (convex + other);
+    while (outer - inner).abs() > BRACKET_WIDTH * (1.0 + outer.abs()) {
+        let middle = 0.5 * (outer + inner);
         if is_surely_convex(forward, backward, middle) {
-            convex = middle;
+            outer = middle;
         } else {
-            other = middle;
+            inner = middle;
         }
     }
-    convex
+    outer
 }

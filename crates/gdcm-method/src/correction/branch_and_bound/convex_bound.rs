@@ -2,10 +2,14 @@
 //!
 //! ```text
 //! tangent bound    the tangent plane at the point, minimised over a box
-//! quadratic bound  the tangent plane and a Hessian, minimised over all distances from a point near the minimum
+//! quadratic bound  the tangent plane and a Hessian, minimised over all displacements from a point
+//!                  near the minimum
 //! ```
 
 use super::expansion::{Expansion, ScaleBox};
+
+/// Margin, relative to `r^2`, for the rounding in the sum `r` and in the inverse of the Hessian.
+const ROUNDING_MARGIN: f64 = 1e-6;
 
 /// Bounds a convex function over a box from below, by its tangent plane at `scales` (inside the
 /// box), less the rounding errors in the value, in every slope and in their sum.
@@ -24,22 +28,25 @@ pub(super) fn tangent_bound(scales: &[f64], at: &Expansion, bounds: ScaleBox<'_>
 }
 
 /// Bounds a convex function from below near a point at which its slopes are almost zero, by its
-/// tangent plane and Hessian. `None` if the slopes are too large.
-///
-/// Let `F` be the function, `s` the point, `H` a matrix that the Hessian exceeds by a positive
-/// semidefinite matrix while no scale is further than `within` from `s`, and `reach` the square
-/// roots of the diagonal of `H^-1` (0 for a fixed scale). For a displacement `d` and `t = sqrt(d' H
-/// d)`, each scale moves by `|d_i| <= reach_i t`. With the gradient `g` and its error `e`,
-/// therefore
+/// tangent plane and a Hessian.
 ///
 /// ```text
-/// F(s + d) - F(s)  >=  g' d + d' H d / 2  >=  t^2 / 2 - r t  >=  -r^2 / 2,      r = sum (|g_i| + e_i) reach_i
+/// F, s     the function and the point, where `at` is the expansion
+/// g, e     gradient at s, and the bound on its rounding error
+/// within   distance from s, in each scale, up to which the Hessian of F is at least H (their
+///          difference is positive semidefinite)
+/// reach    square roots of the diagonal of H^-1; 0 for a fixed scale
+/// pressed  whether a scale's slope presses it against its bound
+/// d, t     a displacement, and its length t = sqrt(d' H d); hence |d_i| <= reach_i t
+///
+/// F(s + d) - F(s)  >=  g' d + d' H d / 2  >=  t^2 / 2 - r t  >=  -r^2 / 2
+/// r = sum of (|g_i| + e_i) reach_i over the scales that are not pressed: pressed ones only raise F
 /// ```
 ///
-/// At `t = r`, where no scale has moved by more than `r reach_i`, `F` no longer falls along `d`; a
-/// convex function does not fall further out either, so that the bound holds everywhere if `r
-/// reach_i <= within`. A scale that its slope has `pressed` against its bound can only raise `F`,
-/// and does not count in `r`.
+/// At `t = r`, the slope of `F` along `d` is at least `t - r = 0`, and a convex function that no
+/// longer falls does not fall further out either. The bound thus holds for every `d` if no scale
+/// has moved by more than `within` at `t = r`, that is, `r reach_i <= within`; otherwise returns
+/// `None`.
 pub(super) fn quadratic_bound(
     at: &Expansion,
     reach: &[f64],
@@ -54,8 +61,7 @@ pub(super) fn quadratic_bound(
     }
     let farthest = r * reach.iter().fold(0.0_f64, |most, reach| most.max(*reach));
     if farthest <= within {
-        // `1.0 + 1e-6`: margin for rounding in the sum and in the inverse.
-        let bound = at.value.value - at.value.error - 0.5 * r * r * (1.0 + 1e-6);
+        let bound = at.value.value - at.value.error - 0.5 * r * r * (1.0 + ROUNDING_MARGIN);
         Some(bound - 4.0 * f64::EPSILON * bound.abs())
     } else {
         None

@@ -1,7 +1,15 @@
 //! A search's work, counted instead of timed, so that the results are reproducible; and the request
-//! to stop the search.
+//! to stop the search. The unit is an evaluation of a term in the objective.
 
 use std::cell::Cell;
+
+/// Number of multiply-adds that count as one term evaluation.
+pub(crate) const MULTIPLY_ADDS: u64 = 16;
+
+/// Returns the work for a Cholesky factorisation of an n x n matrix, `n^3 / 6` multiply-adds.
+pub(crate) fn cholesky_work(n: u64) -> u64 {
+    n * n * n / (6 * MULTIPLY_ADDS)
+}
 
 /// Error if the caller stopped the search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -40,6 +40,8 @@ impl Line {
         }
         let start = function.evaluate(over.low, over.low.exp());
         let end = function.evaluate(over.high, over.high.exp());
+        // The tangent touches beyond the right end if even the tangent there overshoots the left
+        // end: the overshoot decreases to the right.
         if over.high <= function.inflection() || overshoot(over.low, &start, over.high, &end) >= 0.0
         {
             return Some(Self::chord(over, start.value, end.value));
@@ -48,8 +50,9 @@ impl Line {
     }
 
     /// Finds the tangent through the left end by Newton's method within a bracket. `start` and
-    /// `end` are the function at both interval ends. The iterate approaches from the right, where
-    /// every tangent lies below the function, so that an approximate tangent is sufficient.
+    /// `end` are the function at both interval ends. The tangent at the bracket's right end is
+    /// returned: it passes below the left end, and thus below the function, so that an approximate
+    /// tangent is sufficient.
     fn tangent(
         function: &Exponential,
         over: Interval,
@@ -80,6 +83,7 @@ impl Line {
                 break;
             }
         }
+        // Rounding in the values at both ends, and in the slope over the interval.
         let error =
             start.value.error + tangent.value.error + 2.0 * tangent.slope.error * (right - low);
         let value = Rounded {
@@ -103,6 +107,8 @@ impl Line {
         };
         let error =
             start.error + end.error + 4.0 * f64::EPSILON * (start.value.abs() + end.value.abs());
+        // In exact arithmetic both are equal; the lower keeps the line below the function at both
+        // ends.
         let value = start.value.min(end.value - slope * over.width());
         Self {
             until: f64::INFINITY,

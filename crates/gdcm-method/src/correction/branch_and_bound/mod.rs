@@ -15,25 +15,30 @@
 //! components: `R1`, `c1` those with the input in `j`, `R2`, `c2` those with the input in `i`.
 //! `R1 (e^u - c1)^2` is convex where `e^u >= c1 / 2`, likewise the other exponential, and `f` is
 //! concave on at most one interval. A *node* is a part of the box `lower <= s <= upper`, given by
-//! *difference bounds* `s_j - s_i <= b_ij`. Spatial (interval) branch and bound:
+//! *difference bounds* `s_j - s_i <= b_ij`. Spatial (interval) branch and bound first *proves* that
+//! no lower minimum exists, then *lists* the other local minima within 1 % above the best:
 //!
 //! ```text
 //!  1  best <- local minimum of F from the given start (projected Newton)
 //!  2  open <- { the whole box }
-//!  3  while the lowest open bound < (1 - 2e-10) best (proof), then < 1.01 best (listing),
-//!     and the budget lasts
-//!  4     node <- the open node with the lowest bound;  listing: close it if the monotonicity or
-//!        convexity test shows that it contains no minimum other than those found
-//!  5     node.bound <- minimum, over the node's box, of a tangent plane to its underestimator (each term's convex envelope),
-//!        less the rounding error;  if node.bound >= 1.01 best, close the node
-//!  6     best <- local minimum of F from the tangent point, if it may be a new one worth listing
-//!  7     if node.bound >= (1 - 2e-10) best: close the node if every term is convex over it or line 4 now closes it;
-//!        otherwise keep it for the listing (proof) or branch it (listing)
-//!  8     otherwise: close the node if F is convex over the hull of node and best (convexity test) and the bound from
-//!        best's gradient and Hessian is at least (1 - 2e-10) best; if not, branch it
-//!  9     branch: proof: at the difference whose term lies furthest above its envelope;
+//!  3  while the budget lasts, and the lowest open bound is
+//!        below aim = (1 - 2e-10) best (proof), then below cutoff = 1.01 best (listing)
+//!  4     node <- the open node with the lowest bound
+//!        listing: close it if the monotonicity or the convexity test shows that it contains no
+//!        minimum other than those found
+//!  5     node.bound <- minimum, over the node's box, of a tangent plane to its underestimator
+//!        (each term's convex envelope), less the rounding error
+//!        if node.bound >= cutoff: close the node
+//!  6     best <- local minimum of F from the tangent point, if it may be new and worth listing
+//!  7     if node.bound >= aim: close the node if every term is convex over it, or line 4 now
+//!        closes it; otherwise keep it for the listing (proof), or branch it (listing)
+//!  8     if node.bound < aim: close the node if F is convex over the hull of node and best
+//!        (convexity test), and the bound from best's gradient and Hessian is at least aim;
+//!        otherwise branch it
+//!  9     branch: in the proof, at the difference whose term lies furthest above its envelope;
 //!        if there is none, and in the listing: at the ends of concave intervals;
-//!        if there is none: at the difference whose term's slope varies most;  if its range is too narrow, close the node
+//!        if there are none: at the difference whose term's slope varies most;
+//!        if its range is too narrow: close the node
 //! 10  lower bound <- lowest bound of all closed and open nodes
 //! ```
 //!

@@ -26,11 +26,12 @@ const LEAST_STEP: f64 = 1e-15;
 /// A projected Newton method.
 ///
 /// ```text
-/// 1  quadratic model at the current point; the step leads to its minimum over the box;
-///    with the curvature's magnitude where the Hessian is not positive definite; end if there is no minimum either
+/// 1  step to the minimum, over the box, of the quadratic model at the current point; if the
+///    Hessian is not positive definite, of the model with the curvature's magnitude; end if that
+///    has no minimum either
 /// 2  halve the step until the function decreases; end if it does not
-/// 3  repeat from 1, until `enough` holds, the step is at rounding level, three steps were made near the minimum,
-///    or after 100 steps
+/// 3  repeat from 1, until `enough` holds, the step is at rounding level, three steps were made
+///    near the minimum, or after 100 steps
 /// ```
 ///
 /// Each step minimises the model over the box exactly, so that the active bounds are correct as
@@ -75,6 +76,7 @@ impl<'a> Newton<'a> {
             if self.effort.is_stopped() || enough(scales, &self.reached) {
                 return;
             }
+            // Step 1
             self.model.set_box(bounds, scales);
             let Some(step) = self.minimise_model(function, scales) else {
                 return;
@@ -132,6 +134,7 @@ impl<'a> Newton<'a> {
             return false;
         }
         let here = self.reached.value;
+        // Increases up to this count as rounding.
         let noise = 4.0 * f64::EPSILON * here.value.abs() + 0.25 * here.error;
         let mut fraction = 1.0;
         for _ in 0..HALVINGS {

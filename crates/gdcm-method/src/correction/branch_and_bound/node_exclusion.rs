@@ -3,10 +3,10 @@
 //! unknowns; the last scale, the *ground*, is always 0.
 //!
 //! ```text
-//! monotonicity  some slope dF/ds_i has a constant sign over the region, and s_i can move downhill without meeting
-//!               a bound: the region contains no minimum
-//! convexity     the Hessian of F, with each term's curvature replaced by its minimum over the region, is positive
-//!               definite: the region contains at most one minimum
+//! monotonicity  some slope dF/ds_i has a constant sign over the region, and s_i can move downhill
+//!               without meeting a bound: the region contains no minimum
+//! convexity     the Hessian of F, with each term's curvature replaced by its minimum over the
+//!               region, is positive definite: the region contains at most one minimum
 //! ```
 //!
 //! Hansen & Walster, *Global Optimization Using Interval Analysis*, 2004. Both tests are
@@ -18,6 +18,7 @@ use nalgebra::DMatrix;
 
 use super::derivatives::Range;
 use super::difference_bounds::DifferenceBounds;
+use super::effort::cholesky_work;
 use super::expansion::add_curvature;
 use super::objective::Objective;
 use super::term::Term;
@@ -29,25 +30,26 @@ const ROUNDING: f64 = 1e-12;
 /// The objective with the structure needed by the exclusion tests.
 pub(super) struct NodeExclusion<'a> {
     pub(super) objective: &'a Objective,
-    /// Reference for each scale: the ground, or the first scale in its floating piece.
-    reference: Vec<usize>,
-    /// For each scale, the scales relative to which it is bounded: the ground, or the other scales
-    /// in its floating piece.
-    bounded_by: Vec<Vec<usize>>,
     /// Floating pieces: scales that terms connect with one another, but not with the ground.
     pub(super) floating: Vec<Vec<usize>>,
+    /// Reference for each scale: the ground, or the first scale in its floating piece.
+    reference: Vec<usize>,
+    /// For each scale, the scales from which its distance matters: the ground, or the other scales
+    /// in its floating piece. A movement meets a bound where such a distance is as large as the
+    /// whole box allows.
+    measured_from: Vec<Vec<usize>>,
 }
 
 impl<'a> NodeExclusion<'a> {
     pub(super) fn new(objective: &'a Objective) -> Self {
         let ground = objective.ground();
         let mut reference = vec![ground; objective.scales()];
-        let mut bounded_by = vec![vec![ground]; objective.scales()];
+        let mut measured_from = vec![vec![ground]; objective.scales()];
         let floating = objective.floating_pieces();
         for piece in &floating {
             for &scale in piece {
                 reference[scale] = piece[0];
-                bounded_by[scale] = piece
+                measured_from[scale] = piece
                     .iter()
                     .copied()
                     .filter(|&other| other != scale)
@@ -56,17 +58,16 @@ impl<'a> NodeExclusion<'a> {
         }
         Self {
             objective,
-            reference,
-            bounded_by,
             floating,
+            reference,
+            measured_from,
         }
     }
 
-    /// Returns the work per test, in term evaluations: the range for every slope, or the Hessian
-    /// and its Cholesky factorisation.
+    /// Returns the work per test, in term evaluations: the range of every slope or curvature, which
+    /// counts as four evaluations per term, and a Cholesky factorisation.
     pub(super) fn work(&self) -> u64 {
-        let scales = self.objective.scales() as u64;
-        4 * self.objective.terms.len() as u64 + scales * scales * scales / 96
+        4 * self.objective.terms.len() as u64 + cholesky_work(self.objective.scales() as u64)
     }
 
     /// Monotonicity test: returns whether the region contains no local minimum, because the slope
@@ -84,16 +85,17 @@ impl<'a> NodeExclusion<'a> {
     }
 
     /// Returns whether the region contains no local minimum other than `minimum`. Over the hull
-    /// around both, scales whose slope has a constant sign are on their bound at any local minimum,
-    /// and the objective must be convex in the other scales.
+    /// around both, a scale whose slope has a constant sign is on the same bound at every local
+    /// minimum, because otherwise it could move downhill. The convexity test then needs only the
+    /// other scales.
     pub(super) fn has_only(&self, region: &DifferenceBounds, minimum: &[f64]) -> bool {
         let hull = region.hull(minimum);
         let slopes = self.slope_ranges(&hull);
         let ground = self.objective.ground();
-        // Free: scales that no bound of their own stops (those in a floating piece), and scales
-        // whose slope has no constant sign.
+        // The scales in a floating piece are always tested: no bound of their own stops them,
+        // because the piece can be shifted.
         let free: Vec<usize> = (0..ground)
-            .filter(|&scale| self.bounded_by[scale] != [ground] || sign(&slopes[scale]) == 0)
+            .filter(|&scale| self.reference[scale] != ground || sign(&slopes[scale]) == 0)
             .collect();
         self.is_convex_in(&hull, free)
     }
@@ -105,7 +107,7 @@ impl<'a> NodeExclusion<'a> {
 
     /// Returns whether a bound stops the scale from moving downhill, given its slope's sign.
     fn is_stopped(&self, region: &DifferenceBounds, scale: usize, sign: i8) -> bool {
-        self.bounded_by[scale].iter().any(|&other| {
+        self.measured_from[scale].iter().any(|&other| {
             if sign > 0 {
                 self.reaches_box(region, scale, other)
             } else {

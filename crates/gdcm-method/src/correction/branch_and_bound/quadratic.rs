@@ -6,15 +6,14 @@
 //! ```
 //!
 //! An *entry* is a response of an output to an input, or a channel's deviation from neutral, with
-//! weight `w`. Its *delta* is the gain or delay that it needs, its *target difference* `u_e` the
-//! difference between two scales (the unknowns, see [`super`]) at which it meets its delta. The sum
-//! is over the entries.
+//! weight `w`. Its *target* is the gain's logarithm or the delay that it needs, its *target
+//! difference* `u_e` the difference between two scales (the unknowns, see [`super`]) at which it
+//! meets its target. The sum is over the entries.
 
 use super::rounded::Rounded;
 use super::term::{Function, Term, TermSum};
 
-/// An entry in an objective: once `delta` is in the coordinate (`Coordinate`), its square is
-/// `weight (delta - offset - (s_input - s_output))^2`.
+/// An entry in an objective, whose square is `weight (target - offset - (s_input - s_output))^2`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SquareEntry {
     /// Index of the output's scale; the ground, if the entry is an input's deviation from neutral.
@@ -22,9 +21,8 @@ pub(crate) struct SquareEntry {
     /// Index of the input's scale; the ground, if the entry is an output's deviation from neutral.
     pub(crate) input: usize,
     pub(crate) weight: f64,
-    /// Target: delta gain, delta delay or neutral value; converted to the coordinate before
-    /// quadratic terms are formed.
-    pub(crate) delta: f64,
+    /// Coordinate (a gain's logarithm, or a delay) that the entry needs, or neutral coordinate.
+    pub(crate) target: f64,
     /// Coordinate of the entry's net value if both scales are 0.
     pub(crate) offset: Rounded,
 }
@@ -40,8 +38,8 @@ struct TargetDifference {
 impl SquareEntry {
     /// Returns the target difference, with the two scales ordered by index.
     fn target_difference(&self) -> TargetDifference {
-        let difference = self.delta - self.offset.value;
-        let error = self.offset.error + f64::EPSILON * (self.delta.abs() + difference.abs());
+        let difference = self.target - self.offset.value;
+        let error = self.offset.error + f64::EPSILON * (self.target.abs() + difference.abs());
         if self.output < self.input {
             TargetDifference {
                 from: self.output,

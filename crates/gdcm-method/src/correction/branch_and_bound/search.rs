@@ -11,7 +11,7 @@
 
 use super::convex_bound::tangent_bound;
 use super::difference_bounds::DifferenceBounds;
-use super::effort::{Effort, SearchStopped};
+use super::effort::{Effort, MULTIPLY_ADDS, SearchStopped};
 use super::expansion::{Curvature, Differentiable, Expansion, ScaleBox};
 use super::newton::Newton;
 use super::node_exclusion::NodeExclusion;
@@ -28,11 +28,13 @@ const AIM: f64 = 2e-10;
 const NEAR: f64 = 1.01;
 
 /// How much of a node's bound may be lost by ending Newton's method early: relative to the desired
-/// gap or, if the node will be branched anyway, to the distance between the bound and its goal.
+/// gap or, if the node will be branched anyway, to the distance between the bound and its goal. A
+/// compromise: a smaller value needs more Newton steps, a larger one more nodes.
 const ACCEPTED_LOSS: f64 = 0.05;
 /// Maximum difference between the scales of two minima that count as duplicates.
 const SAME_MINIMUM: f64 = 1e-6;
-/// Minimum distance between the split point and either end, relative to a term's range.
+/// Minimum distance between the split point and either end, relative to a term's range, so that
+/// each part has at most 85 % of the range.
 const SPLIT_MARGIN: f64 = 0.15;
 /// Minimum range width for splitting a term's range.
 const LEAST_SPLIT_WIDTH: f64 = 1e-11;
@@ -40,7 +42,8 @@ const LEAST_SPLIT_WIDTH: f64 = 1e-11;
 /// branching at that term; smaller distances are negligible beside [`AIM`].
 const LEAST_ENVELOPE_GAP: f64 = 1e-13;
 /// Ratio between the underestimators' outer curvature and the objective's largest Hessian entry, by
-/// magnitude, at the best minimum.
+/// magnitude, at the best minimum. It is well above 1 for the reason given at
+/// [`Search::outer_curvature`].
 const OUTER_CURVATURE_RATIO: f64 = 8.0;
 
 #[derive(Clone, Debug)]
@@ -216,11 +219,9 @@ impl<'a> Search<'a> {
         if bound >= self.cutoff() {
             return self.close(bound);
         }
-        // Line 6. A minimum to be listed lies below the cutoff; a start near it may lie slightly
-        // above.
+        // Line 6
         let known_minima = self.minima.len();
-        let value = self.objective.value(&start);
-        if value < self.best || (value < NEAR * self.cutoff() && !self.has_minimum_in(&region)) {
+        if self.may_lead_to_a_minimum(&start, &region) {
             self.descend(&start);
         }
         if bound >= self.aim() {
@@ -294,6 +295,14 @@ impl<'a> Search<'a> {
         highest
     }
 
+    /// Line 6: returns whether a descent from `start` may lead to a better minimum, or to a new one
+    /// below the cutoff. The start may be slightly higher than the minimum: up to 1 % above the
+    /// cutoff.
+    fn may_lead_to_a_minimum(&self, start: &[f64], region: &DifferenceBounds) -> bool {
+        let value = self.objective.value(start);
+        value < self.best || (value < NEAR * self.cutoff() && !self.has_minimum_in(region))
+    }
+
     /// Line 6: minimises the objective from `start` over the whole box, and stores the minimum if
     /// it is new or lower than its duplicate. Updates `best`, and `outer_curvature` if the minimum
     /// is the new best.
@@ -349,7 +358,7 @@ impl<'a> Search<'a> {
     fn has_minimum_in(&self, region: &DifferenceBounds) -> bool {
         let scales = self.objective.scales();
         self.effort
-            .spend((self.minima.len() * scales * scales) as u64 / 16);
+            .spend((self.minima.len() * scales * scales) as u64 / MULTIPLY_ADDS);
         self.minima
             .iter()
             .any(|minimum| region.contains(&minimum.scales))
@@ -414,7 +423,7 @@ impl<'a> Search<'a> {
         start: &[f64],
     ) {
         self.effort
-            .spend(4 * self.objective.work() + (start.len() * start.len()) as u64 / 4);
+            .spend(4 * self.objective.work() + split_work(start.len()));
         let listing = self.proven_at.is_some();
         let mut term = None;
         if !listing {
@@ -458,7 +467,7 @@ impl<'a> Search<'a> {
         let mut near_start = Some(region.clone());
         for end in ends {
             let Some(rest) = near_start else { return };
-            self.effort.spend((start.len() * start.len()) as u64 / 4);
+            self.effort.spend(split_work(start.len()));
             let below = rest.below(end.from, end.to, end.at);
             let above = rest.above(end.from, end.to, end.at);
             let far_side;
@@ -520,4 +529,10 @@ impl<'a> Search<'a> {
             all_minima: self.all_minima && left >= cutoff,
         }
     }
+}
+
+/// Returns the work for splitting a node, in term evaluations: both parts copy and tighten the
+/// bounds on all differences between two scales, which counts as four multiply-adds for each.
+fn split_work(scales: usize) -> u64 {
+    (scales * scales) as u64 / (MULTIPLY_ADDS / 4)
 }

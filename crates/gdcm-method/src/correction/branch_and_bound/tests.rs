@@ -14,6 +14,7 @@ use super::newton::Newton;
 use super::node_exclusion::NodeExclusion;
 use super::objective::Objective;
 use super::proof_budget::ProofBudget;
+use super::rounded::Rounded;
 use super::search::search;
 use super::underestimator::Underestimator;
 use crate::correction::channel_bounds::Bounds;
@@ -26,13 +27,13 @@ use crate::correction::scaled_objective::{rounding_floor, scaled_objective};
 type Exact = FBig<HalfEven, 2>;
 
 /// Converts a value to 170 bits, about 51 digits.
-fn exact(figure: f64) -> Exact {
-    Exact::try_from(figure).unwrap().with_precision(170).value()
+fn exact(value: f64) -> Exact {
+    Exact::try_from(value).unwrap().with_precision(170).value()
 }
 
 /// Returns the exact value minus the computed value, rounded to double precision.
-fn excess(figure: &Exact, computed: f64) -> f64 {
-    (figure - exact(computed)).to_f64().value()
+fn excess(value: &Exact, computed: f64) -> f64 {
+    (value - exact(computed)).to_f64().value()
 }
 
 /// Exact logarithms of the channel gains, as tests compute them.
@@ -91,11 +92,11 @@ impl Sample {
 
     /// Computes the exact square of an entry's residual, a difference of ratios or of dB values.
     fn exact_square(&self, delta: f64, logarithm: &Exact) -> Exact {
-        let miss = match self.problem.quantity {
+        let residual = match self.problem.quantity {
             Quantity::Gain(GainObjective::Ratio) => exact(delta) - logarithm.exp(),
             _ => (exact(delta).ln() - logarithm) * (exact(20.0) / exact(10.0).ln()),
         };
-        &miss * &miss
+        &residual * &residual
     }
 
     /// Computes the exact objective: eq. (7), or its counterpart in dB.
@@ -124,6 +125,18 @@ impl Sample {
             .collect()
     }
 
+    /// Returns a point in the box at most half a `width` from `centre` in each scale; the `shares`
+    /// of the width place it.
+    fn near(&self, centre: &[f64], shares: &[f64], width: f64) -> Vec<f64> {
+        let ScaleBox { lower, upper } = self.objective.bounds();
+        let mut point = Vec::new();
+        for (index, scale) in centre.iter().enumerate() {
+            let shifted = scale + width * (shares[index] - 0.5);
+            point.push(shifted.clamp(lower[index], upper[index]));
+        }
+        point
+    }
+
     /// Returns a part of the box that contains `inside`; every difference is limited to at most the
     /// share `width` on either side.
     fn region(&self, inside: &[f64], width: f64) -> DifferenceBounds {
@@ -142,28 +155,37 @@ impl Sample {
     }
 }
 
+/// Creates random samples: `held` gives the input of each output's constrained entry, if any.
 fn samples() -> impl Strategy<Value = Sample> {
     let gains = prop::collection::vec(-2.0..2.0_f64, 9);
     let held = prop::collection::vec(prop::option::weighted(0.5, 0..3_usize), 3);
     let alpha = prop_oneof![Just(0.0), Just(1e-12), Just(1.0), Just(1e6)];
-    let kind = prop_oneof![3 => Just(GainObjective::Ratio), 1 => Just(GainObjective::Decibel)];
+    let objective = prop_oneof![3 => Just(GainObjective::Ratio), 1 => Just(GainObjective::Decibel)];
     let bounds = (1e-3..0.3_f64, 3.0..1e3_f64);
-    ((1..=3_usize, 1..=3_usize), gains, held, alpha, kind, bounds).prop_map(
-        |((outputs, inputs), gains, held, alpha, kind, (lower, upper))| {
-            let delta = PairTable::from_fn(outputs, inputs, |pair| {
-                Some(gains[3 * pair.output + pair.input].exp())
-            });
-            let constrained = PairTable::from_fn(outputs, inputs, |pair| {
-                held[pair.output] == Some(pair.input)
-            });
-            let problem = Problem::gains(delta, constrained, Bounds { lower, upper });
-            Sample::new(Problem {
-                quantity: Quantity::Gain(kind),
-                alpha,
-                ..problem
-            })
-        },
+    (
+        (1..=3_usize, 1..=3_usize),
+        gains,
+        held,
+        alpha,
+        objective,
+        bounds,
     )
+        .prop_map(
+            |((outputs, inputs), gains, held, alpha, objective, (lower, upper))| {
+                let delta = PairTable::from_fn(outputs, inputs, |pair| {
+                    Some(gains[3 * pair.output + pair.input].exp())
+                });
+                let constrained = PairTable::from_fn(outputs, inputs, |pair| {
+                    held[pair.output] == Some(pair.input)
+                });
+                let problem = Problem::gains(delta, constrained, Bounds { lower, upper });
+                Sample::new(Problem {
+                    quantity: Quantity::Gain(objective),
+                    alpha,
+                    ..problem
+                })
+            },
+        )
 }
 
 fn shares() -> impl Strategy<Value = Vec<f64>> {
@@ -171,20 +193,26 @@ fn shares() -> impl Strategy<Value = Vec<f64>> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 150, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig {
+        cases: 150,
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    })]
 
     #[test]
     fn the_objective_is_known_to_its_rounding(sample in samples(), shares in shares()) {
         let scales = sample.at(&shares);
         let mut expansion = Expansion::zero(scales.len());
         sample.objective.expand(&scales, Curvature::True, &mut expansion);
-        let off = excess(&sample.exact_objective(&scales), expansion.value.value).abs();
-        prop_assert!(off <= expansion.value.error, "off by {:e}, not {:e}", off, expansion.value.error);
+        let Rounded { value, error } = expansion.value;
+        let off = excess(&sample.exact_objective(&scales), value).abs();
+        prop_assert!(off <= error, "off by {:e}, not {:e}", off, error);
         // The error bound is also sharp: at most a few hundred roundings relative to the squares,
         // which exceed their sum if terms cancel.
-        let squares: f64 = sample.problem.fit_entries().map(|entry| entry.delta.powi(2) + 1.0).sum();
-        let size = 1e4 * (expansion.value.value + squares);
-        prop_assert!(expansion.value.error <= 1e3 * f64::EPSILON * size * (1.0 + sample.problem.alpha));
+        let entries = sample.problem.fit_entries();
+        let squares: f64 = entries.map(|entry| entry.delta.powi(2) + 1.0).sum();
+        let size = 1e4 * (value + squares);
+        prop_assert!(error <= 1e3 * f64::EPSILON * size * (1.0 + sample.problem.alpha));
     }
 
     #[test]
@@ -203,8 +231,10 @@ proptest! {
         let underestimator = Underestimator::new(&sample.objective, &region, 10.0);
         let effort = Effort::new(&|| false);
         let mut bound = f64::NEG_INFINITY;
-        let mut scales: Vec<f64> =
-            inside.iter().enumerate().map(|(index, scale)| scale.clamp(lower[index], upper[index])).collect();
+        let mut scales = Vec::new();
+        for (index, scale) in inside.iter().enumerate() {
+            scales.push(scale.clamp(lower[index], upper[index]));
+        }
         let mut newton = Newton::new(scales.len(), &effort);
         let node = ScaleBox { lower: &lower, upper: &upper };
         newton.minimise(&underestimator, node, &mut scales, |scales, at| {
@@ -223,39 +253,43 @@ proptest! {
     }
 
     #[test]
-    fn no_exact_value_is_below_the_bound_of_the_search(sample in samples(), others in prop::collection::vec(shares(), 4)) {
+    fn no_exact_value_is_below_the_bound_of_the_search(
+        sample in samples(),
+        others in prop::collection::vec(shares(), 4),
+    ) {
         let effort = Effort::new(&|| false);
         let budget = ProofBudget { work: 300_000, listing: 0, bytes: 1_000_000 };
         let start = sample.objective.nearest_to_zero();
-        let found = search(&sample.objective, &start, budget, rounding_floor(&sample.problem), &effort).unwrap();
+        let floor = rounding_floor(&sample.problem);
+        let found = search(&sample.objective, &start, budget, floor, &effort).unwrap();
         let minimum = &found.minima[0].scales;
         // Points next to the minimum, where the bound is sharp, and points all over the box.
-        let near = others.iter().enumerate().map(|(step, shares)| {
-            let width = 10f64.powi(-4 * step as i32 - 2);
-            let ends = sample.objective.lower.iter().zip(&sample.objective.upper).enumerate();
-            ends.map(|(index, (low, high))| (minimum[index] + width * (shares[index] - 0.5)).clamp(*low, *high)).collect()
-        });
-        for point in near.chain(others.iter().map(|shares| sample.at(shares))).chain([minimum.clone()]) {
+        let mut points = vec![minimum.clone()];
+        for (step, shares) in others.iter().enumerate() {
+            points.push(sample.near(minimum, shares, 10f64.powi(-4 * step as i32 - 2)));
+            points.push(sample.at(shares));
+        }
+        for point in points {
             let above = excess(&sample.exact_objective(&point), found.lower_bound);
             prop_assert!(above >= 0.0, "{:e} below {:e}", above, found.lower_bound);
         }
     }
 
     #[test]
-    fn the_bound_from_the_curvature_at_a_minimum_holds_next_to_it(sample in samples(), others in prop::collection::vec(shares(), 6)) {
+    fn the_bound_from_the_curvature_at_a_minimum_holds_next_to_it(
+        sample in samples(),
+        others in prop::collection::vec(shares(), 6),
+    ) {
         let effort = Effort::new(&|| false);
         let mut minimum = sample.objective.nearest_to_zero();
         let bounds = sample.objective.bounds();
-        Newton::new(minimum.len(), &effort).minimise(&sample.objective, bounds, &mut minimum, |_, _| false);
+        let mut newton = Newton::new(minimum.len(), &effort);
+        newton.minimise(&sample.objective, bounds, &mut minimum, |_, _| false);
         let mut at = Expansion::zero(minimum.len());
         sample.objective.expand(&minimum, Curvature::True, &mut at);
         if let Some(bound) = NodeExclusion::new(&sample.objective).bound_at(&minimum, &at) {
             for (step, shares) in others.iter().enumerate() {
-                let width = 10f64.powi(-3 * step as i32 - 2);
-                let ends = bounds.lower.iter().zip(bounds.upper).enumerate();
-                let nearby: Vec<f64> = ends
-                    .map(|(index, (low, high))| (minimum[index] + width * (shares[index] - 0.5)).clamp(*low, *high))
-                    .collect();
+                let nearby = sample.near(&minimum, shares, 10f64.powi(-3 * step as i32 - 2));
                 let above = excess(&sample.exact_objective(&nearby), bound);
                 prop_assert!(above >= 0.0, "{:e} below {:e}", above, bound);
             }

@@ -2,9 +2,9 @@
 //! *scales* `s` ([`super`]).
 //!
 //! ```text
-//! F(s) = constant + sum over terms f(s_to - s_from)  >=  constant + sum over terms e(s_to - s_from)
-//! e: f itself where f is convex over the node's range of the difference, otherwise the sum of the envelopes
-//!    of its two exponentials: forward in u = s_to - s_from, backward in -u
+//! F(s) = constant + sum over terms f(u)  >=  constant + sum over terms e(u),   u = s_to - s_from
+//! e(u)   f itself if f is convex over the node's range of u; otherwise the sum of the envelopes of
+//!        its two exponentials, forward in u and backward in -u
 //! ```
 //!
 //! The *envelope* is the greatest convex function that does not exceed an exponential over the
@@ -64,7 +64,7 @@ impl TermUnderestimator {
         self.range.nearest(term.difference(scales))
     }
 
-    /// Evaluates the underestimator for `function` at `u`, which is within the range.
+    /// Evaluates the underestimator for `function` at `u`, which must be within the range.
     fn inside(&self, function: &Function, u: f64) -> Derivatives {
         match (function, &self.lines) {
             (
@@ -113,8 +113,9 @@ pub(crate) struct Underestimator<'a> {
 }
 
 impl<'a> Underestimator<'a> {
-    /// Work per term for building the underestimator, in term evaluations: up to fourteen
-    /// iterations for a tangent.
+    /// Work per term for building the underestimator, in term evaluations. An estimate: a term that
+    /// is convex over the node costs almost none, any other up to fourteen Newton steps for each of
+    /// its two exponentials.
     pub(crate) const WORK_PER_TERM: u64 = 12;
 
     /// Creates the underestimator for `objective` over `region`, with `outer_curvature` outside the

@@ -155,11 +155,11 @@ fn settings_lines(analysis: &Analysis) -> String {
     if settings.gain_source != GainSource::default() {
         text += &line("G from", &gain_source_text(settings));
     }
-    for turned in study.turned_channels() {
-        let channel = sanitized(&turned.channel);
+    for reversed in study.reversed_channels() {
+        let channel = sanitized(&reversed.channel);
         let words = format!(
             "the sign of {channel} is reversed in the {}",
-            turned.of.models()
+            reversed.role.models()
         );
         text += &line("Sign", &words);
     }

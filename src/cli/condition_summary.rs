@@ -102,16 +102,16 @@ fn response_table(analysis: &Analysis, result: &ConditionAnalysis) -> Table {
         let mut cells = vec![
             sanitized(&dataset.pair_name(pair)),
             if is_held { "yes" } else { "no" }.to_owned(),
-            fixed_digits(result.wanted_gain(pair), 3),
+            fixed_digits(result.delta_gain(pair), 3),
             fixed_digits(half_width_percent(analysis, result, Scalar::Gain(pair)), 1),
             fixed_digits(Some(result.correction.net_gain(pair)), 3),
             fixed_digits(
                 half_width_percent(analysis, result, Scalar::NetGain(pair)),
                 1,
             ),
-            fixed_digits(result.wanted_delay_s(pair).map(s_to_ms), 1),
+            fixed_digits(result.delta_delay_s(pair).map(s_to_ms), 1),
             fixed_digits(
-                half_width_ms(analysis, result, result.wanted_delay(pair)),
+                half_width_ms(analysis, result, result.delta_delay_scalar(pair)),
                 1,
             ),
             fixed_digits(Some(s_to_ms(result.correction.net_delay_s(pair))), 1),

@@ -97,8 +97,8 @@ pub fn told_apart(a: f64, b: f64, decimals: usize) -> (String, String) {
 /// rounds to zero has no sign.
 pub fn signed(change: f64, decimals: usize) -> String {
     let text = format!("{change:+.decimals$}");
-    let is_nothing = text.chars().all(|c| matches!(c, '+' | '-' | '0' | '.'));
-    if is_nothing {
+    let is_zero = text.chars().all(|c| matches!(c, '+' | '-' | '0' | '.'));
+    if is_zero {
         text[1..].to_owned()
     } else {
         with_minus_sign(&text)
@@ -129,8 +129,8 @@ pub fn decimals(value: f64, count: usize) -> String {
     with_minus_sign(without_sign_of_zero(&format!("{value:.count$}")))
 }
 
-/// Formats a value with `count` decimals and a true minus sign; zero has no sign, and a missing value
-/// becomes [`NO_VALUE`].
+/// Formats a value with `count` decimals and a true minus sign; zero has no sign, and a missing
+/// value becomes [`NO_VALUE`].
 pub fn decimals_or_dash(value: Option<f64>, count: usize) -> String {
     match value {
         Some(value) => decimals(value, count),
@@ -160,6 +160,8 @@ pub fn with_minus_sign(number: &str) -> String {
 /// with an exponent, and below 1e8 with all digits before the decimal point.
 pub fn five_digits(value: f64) -> String {
     const SIGNIFICANT: i32 = 5;
+    /// Powers of ten of the values that have no exponent.
+    const PLAIN: std::ops::RangeInclusive<i32> = -5..=7;
     if value == 0.0 {
         return "0".to_owned();
     }
@@ -167,9 +169,10 @@ pub fn five_digits(value: f64) -> String {
         return value.to_string();
     }
     let exponent = value.abs().log10().floor() as i32;
-    let text = match exponent {
-        -5..=7 => format!("{value:.*}", (SIGNIFICANT - 1 - exponent).max(0) as usize),
-        _ => format!("{value:.4e}"),
+    let text = if PLAIN.contains(&exponent) {
+        format!("{value:.*}", (SIGNIFICANT - 1 - exponent).max(0) as usize)
+    } else {
+        format!("{value:.4e}")
     };
     with_minus_sign(&text)
 }

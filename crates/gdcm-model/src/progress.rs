@@ -14,7 +14,7 @@ pub trait Progress: Sync {
     /// Returns whether the computation should stop now, without a result.
     fn cancelled(&self) -> bool;
 
-    /// Called when `done` of `total` parts of the computation are complete.
+    /// Called when `done` of `total` units of work are complete; the computation chooses the unit.
     fn advanced(&self, done: usize, total: usize);
 
     /// Called with the name of the step in progress, possibly several times for the same step.
@@ -47,7 +47,7 @@ pub struct Cancelled;
 pub struct Shares<'a> {
     progress: &'a dyn Progress,
     /// Completed share, 0 to 1.
-    done: Mutex<f64>,
+    completed: Mutex<f64>,
 }
 
 impl<'a> Shares<'a> {
@@ -55,7 +55,7 @@ impl<'a> Shares<'a> {
     pub fn new(progress: &'a dyn Progress) -> Self {
         Self {
             progress,
-            done: Mutex::new(0.0),
+            completed: Mutex::new(0.0),
         }
     }
 
@@ -64,12 +64,13 @@ impl<'a> Shares<'a> {
         self.progress
     }
 
-    /// Reports the step `name`, before which `done` (0 to 1) of the computation is complete.
+    /// Reports the step `name`, before which a share `completed` (0 to 1) of the computation is
+    /// complete.
     ///
     /// # Errors
     /// [`Cancelled`] if the computation was cancelled.
-    pub fn next(&self, done: f64, name: &str) -> Result<(), Cancelled> {
-        self.report(|_| done, name)
+    pub fn next(&self, completed: f64, name: &str) -> Result<(), Cancelled> {
+        self.report(|_| completed, name)
     }
 
     /// Reports that a further `share` (0 to 1) of the computation is complete, in the step `name`.
@@ -77,23 +78,26 @@ impl<'a> Shares<'a> {
     /// # Errors
     /// [`Cancelled`] if the computation was cancelled.
     pub fn advance(&self, share: f64, name: &str) -> Result<(), Cancelled> {
-        self.report(|done| done + share, name)
+        self.report(|completed| completed + share, name)
     }
 
-    /// Reports the step `name`; `done` returns the new completed share (0 to 1), given the previous
-    /// one.
-    fn report(&self, done: impl Fn(f64) -> f64, name: &str) -> Result<(), Cancelled> {
-        /// Number of parts in which progress is reported.
-        const PARTS: f64 = 1000.0;
+    /// Reports the step `name`; `update` returns the new completed share (0 to 1), given the
+    /// previous share.
+    fn report(&self, update: impl Fn(f64) -> f64, name: &str) -> Result<(), Cancelled> {
+        /// Number of units in which a share is reported: finer than any progress bar shows.
+        const UNITS: f64 = 1000.0;
         if self.progress.cancelled() {
             return Err(Cancelled);
         }
         // `into_inner`: a thread that panicked while it held the lock leaves a valid value.
-        let mut total = self.done.lock().unwrap_or_else(PoisonError::into_inner);
-        *total = total.max(done(*total).min(1.0));
+        let mut completed = self
+            .completed
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        *completed = completed.max(update(*completed).min(1.0));
         self.progress.step(name);
         self.progress
-            .advanced((*total * PARTS) as usize, PARTS as usize);
+            .advanced((*completed * UNITS) as usize, UNITS as usize);
         Ok(())
     }
 }
@@ -130,12 +134,12 @@ impl<'a> Portion<'a> {
         self.report(1.0)
     }
 
-    /// Reports that `done` (0 to 1) of the part is complete; a smaller value than before is
-    /// ignored.
-    fn report(&self, done: f64) -> Result<(), Cancelled> {
+    /// Reports that a share `completed` (0 to 1) of the part is complete; a smaller value than
+    /// before is ignored.
+    fn report(&self, completed: f64) -> Result<(), Cancelled> {
         // `into_inner`: a thread that panicked while it held the lock leaves a valid value.
         let mut reported = self.reported.lock().unwrap_or_else(PoisonError::into_inner);
-        let rise = (done.min(1.0) * self.share - *reported).max(0.0);
+        let rise = (completed.min(1.0) * self.share - *reported).max(0.0);
         *reported += rise;
         self.whole.advance(rise, self.name)
     }

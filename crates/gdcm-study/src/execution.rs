@@ -76,7 +76,7 @@ impl<'a> Execution<'a> {
 
     /// Works as [`Execution::each`] on items passed by value, with work that may itself be
     /// cancelled and counts its own steps.
-    pub(crate) fn each_mut<S: Send, T: Send>(
+    pub(crate) fn each_owned<S: Send, T: Send>(
         &self,
         items: Vec<S>,
         work: impl Fn(S) -> Result<T, Cancelled> + Sync,

@@ -56,7 +56,7 @@ pub use decisions::settings::{CouplingCorrection, PhaseCorrection};
 pub use decisions::study::Study;
 pub use execution::Execution;
 pub use gdcm_model::progress::{Cancelled, Progress, Unobserved};
-pub use jobs::curve_jobs::AcrossRole;
+pub use jobs::across_role::AcrossRole;
 pub use results::analysis::{Analysis, ConditionAnalysis};
 pub use results::assessment_table::{AssessedCorrection, AssessmentTable};
 pub use stages::engine::Engine;

@@ -141,7 +141,7 @@ fn entry_words(entry: &CouplingEntry) -> String {
     {
         text.push_str(&format!(" ± {}", telling(half_width, 3)));
     }
-    if entry.is_within_bar && entry.value != 0.0 {
+    if entry.may_be_zero && entry.value != 0.0 {
         format!("({text})")
     } else {
         text

@@ -83,7 +83,7 @@ fn an_unstable_pole_in_the_band_is_told_before_faster_ones_beyond_it() {
 
 #[test]
 fn without_leads_a_feedback_is_said_to_take_their_place() {
-    assert_eq!(ASSESSED.want_leads, 0, "leads are given");
+    assert_eq!(ASSESSED.unused_lead_offers, 0, "leads are given");
     let has_caution = |assessment: &CouplingsAssessment| {
         coupling_cautions(assessment)
             .iter()
@@ -91,7 +91,7 @@ fn without_leads_a_feedback_is_said_to_take_their_place() {
     };
     let mut assessed = (**ASSESSED).clone();
     assert!(!has_caution(&assessed));
-    assessed.want_leads = 2;
+    assessed.unused_lead_offers = 2;
     assert!(has_caution(&assessed));
     assessed.couplings = CouplingCorrection::Mixing;
     assert!(!has_caution(&assessed), "a mixing gives no lead");

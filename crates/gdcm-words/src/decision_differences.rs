@@ -296,7 +296,7 @@ mod tests {
                 condition: ConditionId(3),
                 scheduled: false,
             },
-            Edit::KeepVariant {
+            Edit::StoreVariant {
                 name: "kept".to_owned(),
             },
             setting_table::DELAY_UPPER.to(Some(0.02)),

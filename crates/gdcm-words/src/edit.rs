@@ -60,11 +60,11 @@ pub fn edit_text(edit: &Edit, dataset: &Dataset) -> String {
                 None => format!("restore the sign of {name}"),
             }
         }
-        Edit::TakeModels(taken) => match taken.as_slice() {
+        Edit::AdoptModels(taken) => match taken.as_slice() {
             [(condition, _)] => format!("use identified models (condition {condition})"),
             _ => format!("use identified models ({} conditions)", taken.len()),
         },
-        Edit::ReturnModels { condition } => {
+        Edit::RestoreFileModels { condition } => {
             format!("restore the identified models of the file (condition {condition})")
         }
         Edit::SetRequirements(part, _) => {
@@ -77,8 +77,8 @@ pub fn edit_text(edit: &Edit, dataset: &Dataset) -> String {
             ParameterDecision::On(false) => format!("switch {name} off"),
             ParameterDecision::PlausibleSd(_) => format!("set the plausible change of {name}"),
         },
-        Edit::KeepVariant { name } => format!("keep variant {name}"),
-        Edit::TakeVariant { name } => format!("use variant {name}"),
+        Edit::StoreVariant { name } => format!("keep variant {name}"),
+        Edit::ApplyVariant { name } => format!("use variant {name}"),
         Edit::RemoveVariant { name } => format!("remove variant {name}"),
         Edit::RenameVariant { from, to } => format!("rename variant {from} to {to}"),
     }

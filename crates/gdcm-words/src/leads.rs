@@ -70,7 +70,7 @@ fn wanted_lead_words(
     pair: Pair,
 ) -> Option<String> {
     let compensated = result.compensated.as_ref()?;
-    let wanted_s = result.wanted_delay_s(pair)?;
+    let wanted_s = result.delta_delay_s(pair)?;
     let [output, input] = Channel::of_pair(pair);
     let contributions = [output, input].map(|channel| {
         let words = contribution_words(compensated.leads.taus_s[channel], wanted_s);

@@ -21,7 +21,7 @@ use crate::schedule::schedule_caution_text;
 pub fn remark_text(remark: &Remark, dataset: &Dataset) -> String {
     match remark {
         Remark::ConventionDoubt(doubt) => doubt_text(doubt, dataset),
-        Remark::ChannelTurned { channel, role } => format!(
+        Remark::ChannelReversed { channel, role } => format!(
             "The sign of {} is reversed in {}, relative to the file.",
             channel.name_in(dataset),
             role.models()

@@ -48,7 +48,9 @@ impl GdcmApp {
                 let conditions = self.state.unused_fits();
                 self.adopt_identified(&conditions, choice);
             }
-            RecordsCommand::RestoreFileModels => self.decide(&Edit::ReturnModels { condition }),
+            RecordsCommand::RestoreFileModels => {
+                self.decide(&Edit::RestoreFileModels { condition })
+            }
             RecordsCommand::ShowAdvanced(field) => {
                 records.open_fold = Some(RecordsFold::Settings);
                 records.advanced_field = Some(field);

@@ -103,7 +103,7 @@ impl GdcmApp {
     /// removes toasts that it makes obsolete.
     pub(super) fn record_edited(&mut self, change: RecordChange, before: RecordsSnapshot) {
         let study = self.state.study.clone();
-        self.state.history.record_beside(study, change, before);
+        self.state.history.record_outside(study, change, before);
         self.state.notices.drop_obsolete_toasts();
     }
 }

@@ -94,7 +94,7 @@ impl GdcmApp {
             .sum();
         let names: Vec<String> = adopted.iter().map(|(id, _)| id.to_string()).collect();
         let before = self.state.study.clone();
-        self.decide(&Edit::TakeModels(adopted));
+        self.decide(&Edit::AdoptModels(adopted));
         if self.state.study != before {
             let models = counted(models, "model");
             let conditions = if names.len() == 1 {

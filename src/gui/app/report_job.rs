@@ -76,8 +76,8 @@ impl GdcmApp {
     fn report_inputs(&self, analysis: Arc<Analysis>) -> Arc<ReportInputs> {
         let source = self.report_source();
         Arc::new(ReportInputs {
-            // `asked_with`: the live analysis ignores the requirements and may contain older ones.
-            analysis: Arc::new(analysis.asked_with(&self.state.study.requirements)),
+            // The live analysis ignores the requirements and may contain older ones.
+            analysis: Arc::new(analysis.with_requirements(&self.state.study.requirements)),
             shown: analysis,
             records: self.state.records.history_records(),
             known: self.state.records.identified_poles(),

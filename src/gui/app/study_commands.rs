@@ -31,7 +31,9 @@ impl GdcmApp {
                 history.redo(study, |before| records.exchange(before))
             }),
             // Withdraws the edit of a first click that has turned out to begin a double click.
-            StudyCommand::Forget(edit) => self.restore_study(|history, _, _| history.forget(&edit)),
+            StudyCommand::Forget(edit) => {
+                self.restore_study(|history, _, _| history.withdraw(&edit))
+            }
         }
     }
 

@@ -100,7 +100,7 @@ fn record_entries(state: &State) -> [Entry; 4] {
         Some(records) => records.identification().is_some(),
         None => false,
     };
-    let is_taken = state.study.taken_models().any(|(id, _)| id == condition);
+    let is_taken = state.study.adopted_models().any(|(id, _)| id == condition);
     let here = "In the displayed condition";
     [
         Entry::new(

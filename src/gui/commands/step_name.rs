@@ -19,7 +19,7 @@ pub fn step_name(step: &UndoStep) -> String {
                 _ => format!("change {} settings", names.len()),
             }
         }
-        Change::Beside(change) => change.name(),
+        Change::Outside(change) => change.name(),
         Change::Reload { file } => format!("reload {file}"),
     }
 }

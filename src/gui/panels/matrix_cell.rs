@@ -225,8 +225,8 @@ impl<'a> Cell<'a> {
     /// underline; for a response without G, only "no G", or "zero" if it is numerically zero.
     fn paint_values(&self, ui: &Ui, rect: Rect, is_pointed: bool, palette: &Palette) {
         let Some(shown) = self.shown else { return };
-        let gain = shown.wanted_gain(self.pair);
-        let delay_s = shown.wanted_delay_s(self.pair);
+        let gain = shown.delta_gain(self.pair);
+        let delay_s = shown.delta_delay_s(self.pair);
         let (Some(gain), Some(delay_s)) = (gain, delay_s) else {
             let nothing = matches!(self.undefined(), Some(Undefined::NumericallyZero(_)));
             let words = if nothing { "zero" } else { "no G" };
@@ -243,7 +243,7 @@ impl<'a> Cell<'a> {
         let gain_half = self.value_uncertainty.half_width(Scalar::Gain(self.pair));
         let delay_half = self
             .value_uncertainty
-            .half_width(shown.wanted_delay(self.pair));
+            .half_width(shown.delta_delay_scalar(self.pair));
         let gain_bar = gain_half.map(|half| format!("±{:.0}", 100.0 * half));
         let middle = rect.top() + 0.5 * rect.height();
         let bar_color = if self.state.older_uncertainty().is_some() {

@@ -40,7 +40,7 @@ pub struct CardRow {
 pub fn card_rows(state: &State, shown: &ConditionAnalysis, pair: Pair) -> Vec<CardRow> {
     let value_uncertainty = state.painted_uncertainty();
     let mut rows = Vec::new();
-    if let Some(gain) = shown.wanted_gain(pair) {
+    if let Some(gain) = shown.delta_gain(pair) {
         let half = value_uncertainty
             .half_width(Scalar::Gain(pair))
             .map(|half| format!("{} %", decimals(100.0 * half, 1)));
@@ -52,11 +52,11 @@ pub fn card_rows(state: &State, shown: &ConditionAnalysis, pair: Pair) -> Vec<Ca
             is_not_reduced: false,
         });
     }
-    if let Some(delay_s) = shown.wanted_delay_s(pair) {
+    if let Some(delay_s) = shown.delta_delay_s(pair) {
         let before_ms = s_to_ms(delay_s);
         let after_ms = s_to_ms(delay_s - shown.correction.net_delay_s(pair));
         let half = value_uncertainty
-            .half_width(shown.wanted_delay(pair))
+            .half_width(shown.delta_delay_scalar(pair))
             .map(|half_s| milliseconds(s_to_ms(half_s)));
         rows.push(CardRow {
             name: "delay D",

@@ -16,10 +16,11 @@ use std::sync::Arc;
 use gdcm_method::correction::problem::ProblemError;
 use gdcm_model::dataset::{ConditionId, Dataset};
 use gdcm_model::simulation::Validation;
+use gdcm_study::jobs::across_job::{AcrossCurves, AcrossJob};
 use gdcm_study::jobs::analysis_jobs::{
     AssessmentJob, CouplingsJob, PhysicsJob, Toggles, TogglesJob, UncertaintyJob, VariantJob,
 };
-use gdcm_study::jobs::curve_jobs::{AcrossCurves, AcrossJob, ConditionModes, CurvesJob, ModesJob};
+use gdcm_study::jobs::curve_jobs::{ConditionModes, CurvesJob, ModesJob};
 use gdcm_study::jobs::identification_jobs::{SimulationFailure, SimulationJob};
 use gdcm_study::jobs::requirement_jobs::{
     RecordHistoryJob, RequirementsJob, TestAnswersJob, TimeHistoriesJob,

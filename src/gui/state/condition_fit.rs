@@ -193,7 +193,7 @@ impl State {
             }
             let is_used = self
                 .study
-                .taken_models()
+                .adopted_models()
                 .any(|(taken, models)| taken == *id && is_taken_from(models, found));
             if !is_used {
                 unused.push(*id);

@@ -242,16 +242,16 @@ fn response_row(state: &State, pair: Pair) -> Row {
     let after = cost.map(|cost| cost.corrected);
     let gain = HalfWidths::new(&uncertainty, Scalar::Gain(pair));
     let delay = match shown {
-        Some(shown) => HalfWidths::new(&uncertainty, shown.wanted_delay(pair)),
+        Some(shown) => HalfWidths::new(&uncertainty, shown.delta_delay_scalar(pair)),
         None => HalfWidths::default(),
     };
     let net_gain = HalfWidths::new(&uncertainty, Scalar::NetGain(pair));
-    let wanted_delay_s = shown.and_then(|shown| shown.wanted_delay_s(pair));
+    let delta_delay_s = shown.and_then(|shown| shown.delta_delay_s(pair));
     let values = [
-        ("G [-]", shown.and_then(|shown| shown.wanted_gain(pair))),
+        ("G [-]", shown.and_then(|shown| shown.delta_gain(pair))),
         ("G ± [%]", gain.whole),
         ("G ± of identification [%]", gain.inner),
-        ("D [ms]", wanted_delay_s.map(s_to_ms)),
+        ("D [ms]", delta_delay_s.map(s_to_ms)),
         ("D ± [ms]", delay.whole),
         ("D ± of identification [ms]", delay.inner),
         (

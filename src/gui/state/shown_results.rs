@@ -34,8 +34,9 @@ use std::sync::Arc;
 
 use gdcm_model::dataset::Dataset;
 use gdcm_study::decisions::physics_settings::PhysicsCorrection;
+use gdcm_study::jobs::across_job::AcrossCurves;
 use gdcm_study::jobs::analysis_jobs::Toggles;
-use gdcm_study::jobs::curve_jobs::{AcrossCurves, ConditionModes};
+use gdcm_study::jobs::curve_jobs::ConditionModes;
 use gdcm_study::jobs::requirement_jobs::RecordHistoryJob;
 use gdcm_study::jobs::trade_off_job::TradeOff;
 use gdcm_study::results::analysis::{ConditionFailure, NoResult};

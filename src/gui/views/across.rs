@@ -9,7 +9,7 @@ use egui::{Rect, Ui, UiBuilder, pos2, vec2};
 use gdcm_model::dataset::ConditionId;
 use gdcm_model::number_format::counted;
 use gdcm_plot::figure::responses::{AirspeedCurves, AirspeedResponse};
-use gdcm_study::jobs::curve_jobs::AcrossJob;
+use gdcm_study::jobs::across_job::AcrossJob;
 use gdcm_study::stages::condition_curves::display_band;
 
 use super::PageEntry;

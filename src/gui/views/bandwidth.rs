@@ -7,10 +7,9 @@ use egui::{Grid, Ui, Vec2, vec2};
 use gdcm_model::dataset::{ConditionId, Pair};
 use gdcm_model::number_format::{decimals_or_dash, with_minus_sign};
 use gdcm_model::units::{s_to_ms, telling};
+use gdcm_plot::figure::bandwidth_detail::{BandwidthDetail, bandwidth_detail_figure};
 use gdcm_plot::figure::marks::MarkId;
-use gdcm_plot::figure::requirements::{
-    BandwidthDetail, bandwidth_detail_figure, bandwidth_pairs, bandwidth_place,
-};
+use gdcm_plot::figure::requirements::{bandwidth_pairs, bandwidth_place};
 use gdcm_study::results::requirement_role::RequirementRole;
 use gdcm_study::results::requirements::Requirements;
 use gdcm_words::missing_results::no_bandwidth_text;
@@ -51,8 +50,8 @@ pub(super) fn bandwidth_detail_ui(
         pair,
         condition,
         role,
-        bandwidth: settings.overview.bandwidth,
-        phase_delay_s: settings.overview.phase_delay_s,
+        bandwidth_tolerance: settings.overview.bandwidth,
+        phase_delay_tolerance_s: settings.overview.phase_delay_s,
     };
     let figure = bandwidth_detail_figure(&detail, state.dataset());
     // The scene borrows the state: take the view out while the figure is drawn.

@@ -3,9 +3,9 @@
 
 use egui::{Align2, FontId, Rect, Ui, pos2, vec2};
 
-use gdcm_plot::figure::gains::{
-    Across, GainAxes, GainQuantity, Measure, add_previous, channels_figure, label_selected_only,
-    reserve_room_for_bars,
+use gdcm_plot::figure::gains::{Across, GainAxes, GainQuantity, Measure, channels_figure};
+use gdcm_plot::figure::gains_on_screen::{
+    add_previous, label_selected_only, reserve_room_for_bars,
 };
 use gdcm_plot::figure::marks::MarkId;
 use gdcm_plot::figure::{Figure, all_channels};

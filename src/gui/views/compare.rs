@@ -73,7 +73,7 @@ fn keep_ui(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) {
             || entered
         {
             let name = std::mem::take(name);
-            commands.push(Edit::KeepVariant { name }.into());
+            commands.push(Edit::StoreVariant { name }.into());
         }
     });
 }
@@ -89,7 +89,7 @@ fn variant_ui(ui: &mut Ui, variant: &Variant, is_overlaid: bool, commands: &mut 
             }
             let hint = "Replaces the current decisions; can be undone";
             if variant_button_ui(ui, "Use", &name, hint) {
-                commands.push(Edit::TakeVariant { name: name.clone() }.into());
+                commands.push(Edit::ApplyVariant { name: name.clone() }.into());
             }
             let label = format!("Overlay variant {name}");
             let hint = "Draws the variant's corrected model in the Bode view (dotted) and its net \

@@ -31,8 +31,8 @@ pub(super) fn effect_notes(state: &State, pair: Pair) -> Option<[PaneNote; 2]> {
     let shown = state.shown()?;
     let change = shown.cost[pair]?;
     let is_constrained = shown.held()[pair];
-    let left_db = ratio_to_db(shown.wanted_gain(pair)? / shown.correction.net_gain(pair));
-    let left_s = shown.wanted_delay_s(pair)? - shown.correction.net_delay_s(pair);
+    let left_db = ratio_to_db(shown.delta_gain(pair)? / shown.correction.net_gain(pair));
+    let left_s = shown.delta_delay_s(pair)? - shown.correction.net_delay_s(pair);
     let magnitude = PaneNote {
         cost: cost_change(change.uncorrected.magnitude, change.corrected.magnitude),
         verdict: if left_db.abs() < MATCHED_DB {

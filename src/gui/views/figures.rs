@@ -32,7 +32,7 @@ pub fn figure_of(state: &State, view: View) -> Option<Figure> {
         state.analysis().cloned()
     };
     // The study's requirements may be newer than the analysis, which does not depend on them.
-    let analysis = analysis.map(|analysis| analysis.asked_with(&state.study.requirements));
+    let analysis = analysis.map(|analysis| analysis.with_requirements(&state.study.requirements));
     let source = condition_source(state);
     figure_request(state, view)?.figure(analysis.as_ref(), source.as_ref())
 }

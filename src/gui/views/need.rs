@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use gdcm_study::Analysis;
+use gdcm_study::jobs::across_job::AcrossJob;
 use gdcm_study::jobs::analysis_jobs::{AssessmentJob, CouplingsJob, PhysicsJob, VariantJob};
-use gdcm_study::jobs::curve_jobs::{AcrossJob, ModesJob};
+use gdcm_study::jobs::curve_jobs::ModesJob;
 use gdcm_study::jobs::identification_jobs::SimulationJob;
 use gdcm_study::jobs::requirement_jobs::{
     RecordHistoryJob, RequirementsJob, TestAnswersJob, TimeHistoriesJob,

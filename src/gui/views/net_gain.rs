@@ -4,9 +4,9 @@
 use egui::{Panel, RichText, ScrollArea, Ui};
 
 use gdcm_plot::figure::Figure;
-use gdcm_plot::figure::gains::{
-    Across, GainQuantity, add_previous, add_variant, label_selected_only, net_gain_figure,
-    reserve_room_for_bars,
+use gdcm_plot::figure::gains::{Across, GainQuantity, net_gain_figure};
+use gdcm_plot::figure::gains_on_screen::{
+    add_previous, add_variant, label_selected_only, reserve_room_for_bars,
 };
 use gdcm_plot::figure::marks::MarkId;
 

@@ -4,7 +4,7 @@
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Button, Grid, Label, PopupCloseBehavior, RichText, Role, Ui, WidgetInfo, vec2};
 
-use gdcm_plot::figure::condition_source::schedule_words;
+use gdcm_plot::figure::caption_words::schedule_words;
 use gdcm_study::decisions::setting_table;
 use gdcm_words::setting_words::setting_words;
 

@@ -74,7 +74,7 @@ pub fn requirements_job(state: &State) -> Option<RequirementsJob> {
         analysis: analysis.into(),
         uncertainty: state.uncertainty().cloned().map(Into::into),
         settings: Arc::clone(&state.study.requirements),
-        known: state.records.identified_poles(),
+        identified_poles: state.records.identified_poles(),
     })
 }
 

@@ -9,7 +9,8 @@ use egui::{Ui, vec2};
 
 use gdcm_model::dataset::{ConditionId, Pair};
 use gdcm_plot::figure::Figure;
-use gdcm_plot::figure::gains::{GainQuantity, add_previous, label_selected_only};
+use gdcm_plot::figure::gains::GainQuantity;
+use gdcm_plot::figure::gains_on_screen::{add_previous, label_selected_only};
 use gdcm_plot::figure::marks::MarkId;
 use gdcm_plot::figure::schedule_cost::schedule_cost_figure;
 

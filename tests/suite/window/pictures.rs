@@ -251,7 +251,7 @@ fn every_view_looks_as_it_did_in_both_themes() {
     give(&mut window, LayoutCommand::OpenDock(false));
     give(
         &mut window,
-        Edit::KeepVariant {
+        Edit::StoreVariant {
             name: "all models".to_owned(),
         },
     );

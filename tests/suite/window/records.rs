@@ -306,11 +306,11 @@ fn all_conditions_are_identified_by_default_and_their_fits_are_used_in_one_step(
         "unchanged until they are used"
     );
     click(&mut window, "Use 2 fits");
-    assert_eq!(state(&window).study.taken_models().count(), 2);
+    assert_eq!(state(&window).study.adopted_models().count(), 2);
     assert!(state(&window).unused_fits().is_empty());
     step(&mut window, UNDO);
     assert_eq!(
-        state(&window).study.taken_models().count(),
+        state(&window).study.adopted_models().count(),
         0,
         "a single step"
     );
@@ -323,7 +323,7 @@ fn all_conditions_are_identified_by_default_and_their_fits_are_used_in_one_step(
     click(&mut window, "The refined models");
     let taken: Vec<ConditionId> = state(&window)
         .study
-        .taken_models()
+        .adopted_models()
         .map(|(id, _)| id)
         .collect();
     assert_eq!(taken, [CONDITION_10_ID]);
@@ -721,7 +721,7 @@ fn files_of_records_go_to_the_condition_that_their_names_say_and_what_is_wrong_i
     let name = state(&window).condition().flight_state().name.clone();
     click(&mut window, "Condition of flight");
     click(&mut window, &format!("10: {name}"));
-    let assigned = Change::Beside(RecordChange::Assign {
+    let assigned = Change::Outside(RecordChange::Assign {
         records: 1,
         condition: CONDITION_10_ID,
     });
@@ -833,7 +833,7 @@ fn edits_of_records_are_undone_and_redone_in_order_with_decisions_about_the_stud
             record: "cond10_sweep_COL_1, 5 to 25 s".to_owned(),
         },
     };
-    assert_eq!(last_change(&window), Some(&Change::Beside(removed)));
+    assert_eq!(last_change(&window), Some(&Change::Outside(removed)));
     for at in (0..count).rev() {
         step(&mut window, UNDO);
         assert_eq!(decided(&window), states[at], "after step {at} was undone");
@@ -1024,7 +1024,7 @@ fn all_conditions_come_from_one_archive_as_the_readme_says() {
         "{table:?}"
     );
     click(&mut window, "Use 11 fits");
-    assert_eq!(state(&window).study.taken_models().count(), 11);
+    assert_eq!(state(&window).study.adopted_models().count(), 11);
 }
 
 /// Returns a record of the example's channels without units, whose samples leave most units
@@ -1179,7 +1179,7 @@ fn a_record_is_added_once_a_changed_file_takes_its_place_and_another_of_its_name
     std::fs::write(&second, without_units(0.7)).unwrap();
     let mut window = records_window();
     assert_eq!(add(&mut window, &first), ["cond10_flight"]);
-    let added = Change::Beside(RecordChange::Add { records: 1 });
+    let added = Change::Outside(RecordChange::Add { records: 1 });
     assert_eq!(last_change(&window), Some(&added));
     assert_eq!(
         add(&mut window, &first),
@@ -1465,7 +1465,12 @@ fn the_quadrotor_is_identified_in_the_window_from_its_log_alone() {
         }
     }
     click(&mut window, "Use 1 fit");
-    assert!(state(&window).study.taken_models().any(|(id, _)| id == of));
+    assert!(
+        state(&window)
+            .study
+            .adopted_models()
+            .any(|(id, _)| id == of)
+    );
 
     // The sweep is distorted by feedback of gusts. With the position reference that drove the loop,
     // the result is 31.4 dB at 8 rad/s; the direct estimate is off by 1.3 dB.

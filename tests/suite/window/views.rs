@@ -471,7 +471,7 @@ fn a_variant_is_laid_over_bode_and_net_gain_until_that_is_taken_back() {
     let mut window = window();
     give(
         &mut window,
-        Edit::KeepVariant {
+        Edit::StoreVariant {
             name: "as it was".to_owned(),
         },
     );

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use gdcm_model::dataset::Pair;
 use gdcm_model::progress::{Cancelled, Progress, Unobserved};
 use gdcm_plot::figure::bode::{BodeOptions, bode_figure, overview_figure};
-use gdcm_plot::figure::condition_source::condition_words;
+use gdcm_plot::figure::caption_words::condition_words;
 use gdcm_plot::figure::error::error_figure;
 use gdcm_plot::figure::poles::{PoleContents, poles_figure};
 use gdcm_plot::figure::{ConditionSource, Figure, Mark, Role};

@@ -182,8 +182,8 @@ fn change_or_missing(value: Option<f64>) -> String {
 /// fitted, in this order.
 fn response_cells(study: &Study, result: &ConditionAnalysis, pair: Pair) -> [String; 11] {
     let cost = result.cost[pair];
-    let g = result.wanted_gain(pair);
-    let d_ms = result.wanted_delay_s(pair).map(s_to_ms);
+    let g = result.delta_gain(pair);
+    let d_ms = result.delta_delay_s(pair).map(s_to_ms);
     let treatment = if g.is_none() {
         "no G, no D"
     } else if result.held()[pair] {

@@ -8,7 +8,7 @@ use gdcm_model::dataset::{BundleKind, Condition, ConditionId};
 use gdcm_model::number_format::{compact, decimals};
 use gdcm_model::progress::{Cancelled, Progress};
 use gdcm_model::units::{number, s_to_ms};
-use gdcm_plot::figure::condition_source::condition_words;
+use gdcm_plot::figure::caption_words::condition_words;
 use gdcm_plot::figure::gains::class_names;
 use gdcm_study::results::condition_remarks::condition_remarks;
 use gdcm_study::results::remark::Remark;

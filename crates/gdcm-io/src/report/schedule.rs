@@ -10,7 +10,7 @@ use gdcm_method::schedule::{Schedule, ScheduleKind, ScheduleSettings};
 use gdcm_model::dataset::{ConditionId, Dataset, Pair};
 use gdcm_model::number_format::{compact, decimals};
 use gdcm_model::units::{number, s_to_ms, six_digits};
-use gdcm_plot::figure::condition_source::quantity_symbol;
+use gdcm_plot::figure::caption_words::quantity_symbol;
 use gdcm_plot::figure::gains::{Across, GainAxes, Measure, channels_figure, net_gain_figure};
 use gdcm_plot::figure::{Figure, all_channels};
 use gdcm_study::{Analysis, Study};

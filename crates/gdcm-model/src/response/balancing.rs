@@ -50,26 +50,26 @@ pub fn balance_square(a: &mut DMatrix<f64>) -> Vec<f64> {
 fn balancing_factor(a: &DMatrix<f64>, state: usize) -> Option<f64> {
     /// Ratio of the new to the old sum of squares below which the factor is worth a further sweep.
     const WORTHWHILE: f64 = 0.95;
-    let column = a.column(state).norm_squared();
-    let row = a.row(state).norm_squared();
-    let whole = column + row;
-    let mut column = column.sqrt();
-    let mut row = row.sqrt();
-    let mut factor = 1.0;
-    if column == 0.0 || row == 0.0 {
+    let column_square = a.column(state).norm_squared();
+    let row_square = a.row(state).norm_squared();
+    let mut column_norm = column_square.sqrt();
+    let mut row_norm = row_square.sqrt();
+    if column_norm == 0.0 || row_norm == 0.0 {
         return None;
     }
-    while column < row / 2.0 {
-        column *= 2.0;
-        row /= 2.0;
+    let mut factor = 1.0;
+    while column_norm < row_norm / 2.0 {
+        column_norm *= 2.0;
+        row_norm /= 2.0;
         factor *= 2.0;
     }
-    while column >= row * 2.0 {
-        column /= 2.0;
-        row *= 2.0;
+    while column_norm >= row_norm * 2.0 {
+        column_norm /= 2.0;
+        row_norm *= 2.0;
         factor /= 2.0;
     }
-    if column * column + row * row < WORTHWHILE * whole {
+    let balanced_squares = column_norm * column_norm + row_norm * row_norm;
+    if balanced_squares < WORTHWHILE * (column_square + row_square) {
         Some(factor)
     } else {
         None

@@ -11,7 +11,7 @@
 //!        [ G - sigma I  K   ]      G (n x n) from A^T, K from C^T, L from B^T
 //!        [ L            D^T ]      H^T = D^T - L (G - sigma I)^-1 K
 //!    G is real, and zero below its subdiagonal entries h_k, k = 1 ... n - 1;
-//!    the first row of L is zero except for its last entry
+//!    the first row of L is zero except for its last entry l
 //! 2  u <- first row of [G - sigma I, K], the active row; w <- each row of [L D^T] but the first
 //! 3  for k = 1 ... n - 1, with r = row k + 1 of [G - sigma I, K], divided by h_k: the next row,
 //!    with 1 in column k and otherwise real but for -sigma / h_k in column k + 1;
@@ -21,8 +21,8 @@
 //!          w <- w - (w_k / u_k) u;   u <- h_k r - (h_k / u_k) u        u clears the column
 //! 5     else, and in the other frequencies of the eight:
 //!          w <- w - w_k r;           u <- u - u_k r                    r clears the column
-//! 6  the last column: w <- w - (w_n / u_n) u, and the first row of [L D^T] likewise;
-//!    D^T is now H^T
+//! 6  the last column: w <- w - (w_n / u_n) u, and the first row of [L D^T] likewise, with l
+//!    instead of w_n; D^T is now H^T
 //! ```
 //!
 //! Step 5 costs half as much as step 4, because r is real. It is therefore used unless `u_k`
@@ -163,12 +163,12 @@ fn eliminate_group<S: Simd>(
         rows.start(simd, form, ComplexLanes { re: *re, im: *im });
     }
     for column in 0..form.order.saturating_sub(1) {
-        let mut interchange = false;
+        let mut needs_interchange = false;
         for rows in &*registers {
-            interchange |= rows.needs_interchange(simd, form, column);
+            needs_interchange |= rows.needs_interchange(simd, form, column);
         }
         for rows in &mut *registers {
-            rows.clear_column(simd, form, column, interchange);
+            rows.clear_column(simd, form, column, needs_interchange);
         }
     }
     for rows in registers {
@@ -189,9 +189,9 @@ fn append_group<S: Simd>(
         for input in 0..form.inputs {
             let curve = &mut curves[form.pair(input, output)];
             // Row `input` of [L D^T], past the state columns.
-            let place = input * form.width() + form.order + output;
+            let index = input * form.width() + form.order + output;
             for (lane, s) in group.iter().enumerate() {
-                let value = &registers[lane / S::F64_LANES].entries[place];
+                let value = &registers[lane / S::F64_LANES].entries[index];
                 curve.push(if s.is_nan() {
                     *s
                 } else {
@@ -223,8 +223,8 @@ impl<S: Simd> ComplexRows<S> {
     fn start(&mut self, simd: S, form: &HessenbergForm, shift: ComplexLanes<S>) {
         self.shift = shift;
         self.entries.clear();
-        self.entries.reserve(form.complex_rows.len());
-        for entry in &form.complex_rows {
+        self.entries.reserve(form.initial_rows.len());
+        for entry in &form.initial_rows {
             self.entries.push(ComplexLanes::real(simd, *entry));
         }
         if form.order > 0 {
@@ -244,10 +244,16 @@ impl<S: Simd> ComplexRows<S> {
         simd.first_true_m64s(exceeds) < S::F64_LANES
     }
 
-    /// Clears a column: step 5, or with `interchange` step 4, which swaps the active row and the
-    /// next row in the lanes where the active entry is larger.
+    /// Clears a column: step 5, or with `needs_interchange` step 4, which swaps the active row and
+    /// the next row in the lanes where the active entry is larger.
     #[inline(always)]
-    fn clear_column(&mut self, simd: S, form: &HessenbergForm, column: usize, interchange: bool) {
+    fn clear_column(
+        &mut self,
+        simd: S,
+        form: &HessenbergForm,
+        column: usize,
+        needs_interchange: bool,
+    ) {
         let next = form.next_row(column);
         let subdiagonal = &form.subdiagonals[column];
         let shift = self
@@ -256,7 +262,7 @@ impl<S: Simd> ComplexRows<S> {
         let (active, others) = self.entries.split_at_mut(form.width());
         let pivot = active[column];
         let active = &mut active[column + 1..];
-        if !interchange {
+        if !needs_interchange {
             subtract_next(simd, active, pivot, next, shift);
             for row in others.chunks_exact_mut(form.width()) {
                 let multiplier = row[column];
@@ -297,7 +303,7 @@ impl<S: Simd> ComplexRows<S> {
             let quotient = row[form.order - 1].product(simd, reciprocal);
             subtract_multiple(simd, &mut row[form.order..], quotient, active);
         }
-        let quotient = reciprocal.scaled(simd, simd.splat_f64s(form.gain));
+        let quotient = reciprocal.scaled(simd, simd.splat_f64s(form.first_l_entry));
         for (entry, feed_through) in active.iter_mut().zip(&form.feed_through) {
             *entry = ComplexLanes::real(simd, *feed_through).minus_product(simd, quotient, *entry);
         }

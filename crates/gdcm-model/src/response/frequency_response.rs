@@ -43,24 +43,24 @@ impl FrequencyResponse {
     /// Returns the responses with at least one finite value whose finite values are all zero. They
     /// are treated as zero, even if other values are undefined.
     pub fn zero_where_finite(&self) -> Vec<Pair> {
-        let mut found = Vec::new();
+        let mut zero = Vec::new();
         for (pair, curve) in self.curves.iter() {
             let mut finite = curve.iter().filter(|value| value.is_finite()).peekable();
             if finite.peek().is_some() && finite.all(|value| value.norm() == 0.0) {
-                found.push(pair);
+                zero.push(pair);
             }
         }
-        found
+        zero
     }
 
     /// Returns the responses that are not finite at one or more frequencies.
     pub fn not_finite(&self) -> Vec<Pair> {
-        let mut found = Vec::new();
+        let mut not_finite = Vec::new();
         for (pair, curve) in self.curves.iter() {
             if curve.iter().any(|value| !value.is_finite()) {
-                found.push(pair);
+                not_finite.push(pair);
             }
         }
-        found
+        not_finite
     }
 }

@@ -1,5 +1,5 @@
-//! A state-space model transformed so that each frequency costs O(n^2) operations: balanced
-//! (`balancing.rs`), and reduced to upper Hessenberg form (`householder_reduction.rs`).
+//! A state-space model transformed so that each frequency costs O(n^2) operations, for n states:
+//! balanced (`balancing.rs`), and reduced to upper Hessenberg form (`householder_reduction.rs`).
 
 use nalgebra::DMatrix;
 use pulp::Arch;
@@ -21,8 +21,8 @@ const LEAST_ALPHA: f64 = f64::from_bits((1023 - 450) << 52);
 /// ```
 ///
 /// G (n x n) is zero below its first subdiagonal; L has a row per input, and its first row is zero
-/// except for the last entry; K has a column per output. Steps from the model `(A, B, C, D)`, with
-/// `H(s) = C (s I - A)^-1 B + D`:
+/// except for its last entry `l`; K has a column per output. Steps from the model `(A, B, C, D)`,
+/// with `H(s) = C (s I - A)^-1 B + D`:
 ///
 /// 1. Balance A by a diagonal similarity, which makes the result independent of state units.
 /// 2. Divide A by alpha and B by another power of two, so that their largest entries are near 1;
@@ -50,12 +50,13 @@ pub(super) struct HessenbergForm {
     first_input: usize,
     /// `1 / alpha`.
     pub frequency_scale: f64,
-    /// The last entry of the first row of L; all its other entries are zero.
-    pub gain: f64,
+    /// `l`, the last entry in the first row of L; the others are zero.
+    pub first_l_entry: f64,
     /// G's subdiagonal entries, one for each column except the last.
     pub subdiagonals: Vec<Subdiagonal>,
-    /// First row of `[G K]`, then all rows of `[L D^T]` except the first.
-    pub complex_rows: Vec<f64>,
+    /// Initial values of the rows that become complex during elimination: the first row of
+    /// `[G K]`, then all rows of `[L D^T]` except the first.
+    pub initial_rows: Vec<f64>,
     /// All rows of `[G K]` except the first, each divided by its subdiagonal entry unless this is
     /// negligible.
     next_rows: Vec<f64>,
@@ -102,9 +103,9 @@ impl HessenbergForm {
             dual,
             first_input,
             frequency_scale,
-            gain: reduced.gain(),
+            first_l_entry: reduced.first_l_entry(),
             subdiagonals,
-            complex_rows: reduced.complex_rows(),
+            initial_rows: reduced.initial_rows(),
             next_rows,
             feed_through: reduced.feed_through(),
         }
@@ -262,7 +263,7 @@ impl ReversedSystem {
 
     /// Returns the first row of `[G K]`, zero without states, then all rows of `[L D^T]` except the
     /// first.
-    fn complex_rows(&self) -> Vec<f64> {
+    fn initial_rows(&self) -> Vec<f64> {
         let mut rows = Vec::new();
         if self.order > 0 {
             rows.extend(self.scaled_row(0, 1.0));
@@ -275,8 +276,8 @@ impl ReversedSystem {
         rows
     }
 
-    /// Returns the last entry of the first row of L; zero without states or inputs.
-    fn gain(&self) -> f64 {
+    /// Returns `l`, the last entry in the first row of L; zero without states or inputs.
+    fn first_l_entry(&self) -> f64 {
         if self.order > 0 && self.inputs > 0 {
             self.entry(self.order, self.order - 1)
         } else {
@@ -344,10 +345,10 @@ mod tests {
         let form = form(&model.unwrap());
         // `first_input`: the second input has the larger column in B.
         assert_eq!(
-            (form.gain, form.pair(0, 1), form.pair(1, 0)),
+            (form.first_l_entry, form.pair(0, 1), form.pair(1, 0)),
             (1.5, Pair::new(1, 1), Pair::new(0, 0))
         );
-        assert_eq!(form.complex_rows, [-1.5, 4.0, 5.0, 1.0, 0.1, 0.3]);
+        assert_eq!(form.initial_rows, [-1.5, 4.0, 5.0, 1.0, 0.1, 0.3]);
         assert_eq!(form.feed_through, [0.2, 0.4]);
     }
 
@@ -370,6 +371,6 @@ mod tests {
         assert_eq!(form.next_row(1), &next[1][2..]);
         // A reflection preserves |B| = sqrt(14); the scaling divides it by 2, the power of two
         // below 3.
-        assert!((form.gain.abs() - 14.0_f64.sqrt() / 2.0).abs() < 1e-14);
+        assert!((form.first_l_entry.abs() - 14.0_f64.sqrt() / 2.0).abs() < 1e-14);
     }
 }

@@ -55,13 +55,13 @@ fn clear_column(rows: &mut DMatrix<f64>, states: usize, column: usize, first: us
     let Some((head, tail)) = v[first..states].split_first_mut() else {
         return;
     };
-    let tail: f64 = tail.iter().map(|entry| entry * entry).sum();
-    if tail == 0.0 {
+    let tail_square: f64 = tail.iter().map(|entry| entry * entry).sum();
+    if tail_square == 0.0 {
         return;
     }
     // Underflow is harmless: the largest entries in A and B are near 1, so that such squares are
     // negligible.
-    let norm = (*head * *head + tail).sqrt();
+    let norm = (*head * *head + tail_square).sqrt();
     // The only entry that remains in the column.
     let remaining = -norm.copysign(*head);
     let beta = 1.0 / (norm * (norm + head.abs()));

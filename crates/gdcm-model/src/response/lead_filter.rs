@@ -11,9 +11,9 @@ use crate::units::ratio_to_db;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(try_from = "f64", into = "usize")]
 pub enum LeadOrder {
-    /// `(1 + a s) / (1 + b s)`: its gain rises with `omega^2` within the band.
+    /// `(1 + a s) / (1 + b s)`: its gain rises with `omega^2` within the comparison band.
     First,
-    /// Butterworth damping: nearly constant gain within the band.
+    /// Butterworth damping: nearly constant gain within the comparison band.
     #[default]
     Second,
 }
@@ -75,13 +75,14 @@ impl LeadFilter {
     /// Creates the filter from the lead time `l >= 0` at low frequency and the lag time constant
     /// `b > 0`, both in s: `a = b + l / sqrt(2)`, or `a = b + l` for first order.
     pub fn new(order: LeadOrder, lead_s: f64, lag_s: f64) -> Self {
-        let apart_s = match order {
+        // a - b.
+        let difference_s = match order {
             LeadOrder::First => lead_s,
             LeadOrder::Second => lead_s * FRAC_1_SQRT_2,
         };
         Self {
             order,
-            zero_s: lag_s + apart_s,
+            zero_s: lag_s + difference_s,
             lag_s,
         }
     }

@@ -39,7 +39,8 @@ impl ResponseShape {
     }
 
     /// Returns the shape with its phase shifted by whole turns, as close as possible to `reference`
-    /// over the first `points` frequencies (M2).
+    /// over the first `points` frequencies (M2). Callers pass those up to the end of a band, beyond
+    /// which a measured phase may not be informative.
     pub fn phase_aligned(self, reference: &Self, points: usize) -> Self {
         let own = radians(self.phase_deg.iter().take(points));
         let other = radians(reference.phase_deg.iter().take(points));
@@ -53,7 +54,8 @@ impl ResponseShape {
         }
     }
 
-    /// Returns the shape over the first `points` frequencies; NaN at the other frequencies.
+    /// Returns the shape over the first `points` frequencies; NaN at the others, which a plot
+    /// leaves out.
     pub fn first_points(self, points: usize) -> Self {
         if points >= self.phase_deg.len() {
             return self;

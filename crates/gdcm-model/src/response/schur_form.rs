@@ -3,10 +3,10 @@
 //!
 //! ```text
 //! 1  A = Q T Q', T with 1 x 1 and 2 x 2 blocks on its diagonal: Francis' implicit double shifts
-//! 2  for each 2 x 2 block [p q; r s]: mean and half difference m = (p + s) / 2, h = (p - s) / 2
-//!       lambda = m +- j sqrt(-(h^2 + q r)), exact conjugates; or two real eigenvalues
-//! 3     rotate its rows and columns so that the block becomes triangular; the rotation's first
-//!       column is (lambda - s, r) / norm
+//! 2  for each 2 x 2 block [e f; g k]: mean and half difference m = (e + k) / 2, h = (e - k) / 2
+//!       lambda = m +- j sqrt(-(h^2 + f g)), exact conjugates; or two real eigenvalues
+//! 3     rotate its rows and columns so that the block becomes triangular: the first column of the
+//!       rotation, (cosine, sine) = (lambda - k, g) / norm, is the block's eigenvector for lambda
 //! ```
 //!
 //! On request, neighbouring eigenvalues are exchanged by rotating their rows and columns, so that
@@ -24,7 +24,7 @@ pub struct SchurForm {
     pub t: DMatrix<Complex<f64>>,
     /// Minimum magnitude for a difference between eigenvalues used as a divisor: their rounding
     /// error. It replaces the zero difference of equal eigenvalues.
-    least: f64,
+    least_difference: f64,
 }
 
 impl SchurForm {
@@ -40,20 +40,20 @@ impl SchurForm {
         let mut form = Self {
             q: q.map(Complex::from),
             t: t.map(Complex::from),
-            least: 0.0,
+            least_difference: 0.0,
         };
         // Steps 2 and 3.
         for first in blocks {
             let second = first + 1;
             let block = Block {
-                p: t[(first, first)],
-                q: t[(first, second)],
-                r: t[(second, first)],
-                s: t[(second, second)],
+                e: t[(first, first)],
+                f: t[(first, second)],
+                g: t[(second, first)],
+                k: t[(second, second)],
             };
             form.split(first, block);
         }
-        form.least = (f64::EPSILON * form.t.camax()).max(f64::MIN_POSITIVE);
+        form.least_difference = (f64::EPSILON * form.t.camax()).max(f64::MIN_POSITIVE);
         Some(form)
     }
 
@@ -99,8 +99,8 @@ impl SchurForm {
     /// Returns the difference between two eigenvalues, or their rounding error if it is larger.
     fn difference(&self, at: usize, from: usize) -> Complex<f64> {
         let difference = self.t[(at, at)] - self.t[(from, from)];
-        if difference.norm() < self.least {
-            Complex::from(self.least)
+        if difference.norm() < self.least_difference {
+            Complex::from(self.least_difference)
         } else {
             difference
         }
@@ -134,21 +134,21 @@ impl SchurForm {
         if norm == 0.0 {
             return;
         }
-        let c = x / norm;
-        let s = y / norm;
+        let cosine = x / norm;
+        let sine = y / norm;
         for matrix in [&mut self.t, &mut self.q] {
             for row in 0..matrix.nrows() {
                 let left = matrix[(row, upper)];
                 let right = matrix[(row, lower)];
-                matrix[(row, upper)] = left * c + right * s;
-                matrix[(row, lower)] = right * c.conj() - left * s.conj();
+                matrix[(row, upper)] = left * cosine + right * sine;
+                matrix[(row, lower)] = right * cosine.conj() - left * sine.conj();
             }
         }
         for column in 0..self.t.ncols() {
             let above = self.t[(upper, column)];
             let below = self.t[(lower, column)];
-            self.t[(upper, column)] = above * c.conj() + below * s.conj();
-            self.t[(lower, column)] = below * c - above * s;
+            self.t[(upper, column)] = above * cosine.conj() + below * sine.conj();
+            self.t[(lower, column)] = below * cosine - above * sine;
         }
         self.t[(lower, upper)] = Complex::new(0.0, 0.0);
         self.t[(upper, upper)] = second;
@@ -161,77 +161,77 @@ impl SchurForm {
         let second = first + 1;
         let size = self.t.nrows();
         let eigenvalues = block.eigenvalues();
-        let mu = eigenvalues[0] - block.s;
-        let norm = mu.norm().hypot(block.r);
-        let c = mu / norm;
-        let s = block.r / norm;
+        let distance = eigenvalues[0] - block.k;
+        let norm = distance.norm().hypot(block.g);
+        let cosine = distance / norm;
+        let sine = block.g / norm;
         for column in first..size {
             let upper = self.t[(first, column)];
             let lower = self.t[(second, column)];
-            self.t[(first, column)] = c.conj() * upper + lower * s;
-            self.t[(second, column)] = c * lower - upper * s;
+            self.t[(first, column)] = cosine.conj() * upper + lower * sine;
+            self.t[(second, column)] = cosine * lower - upper * sine;
         }
         for row in 0..size {
             if row <= second {
-                rotate_columns(&mut self.t, row, first, c, s);
+                rotate_columns(&mut self.t, row, first, cosine, sine);
             }
-            rotate_columns(&mut self.q, row, first, c, s);
+            rotate_columns(&mut self.q, row, first, cosine, sine);
         }
         self.t[(second, first)] = Complex::new(0.0, 0.0);
         [self.t[(first, first)], self.t[(second, second)]] = eigenvalues;
     }
 }
 
-/// Rotates a row's entries in columns `first` and `first + 1`, with cosine `c` and sine `s`.
+/// Rotates a row's entries in columns `first` and `first + 1`.
 fn rotate_columns(
     matrix: &mut DMatrix<Complex<f64>>,
     row: usize,
     first: usize,
-    c: Complex<f64>,
-    s: f64,
+    cosine: Complex<f64>,
+    sine: f64,
 ) {
     let left = matrix[(row, first)];
     let right = matrix[(row, first + 1)];
-    matrix[(row, first)] = left * c + right * s;
-    matrix[(row, first + 1)] = right * c.conj() - left * s;
+    matrix[(row, first)] = left * cosine + right * sine;
+    matrix[(row, first + 1)] = right * cosine.conj() - left * sine;
 }
 
-/// A 2 x 2 diagonal block `[p q; r s]`.
+/// A 2 x 2 diagonal block `[e f; g k]`.
 #[derive(Clone, Copy)]
 struct Block {
-    p: f64,
-    q: f64,
-    r: f64,
-    s: f64,
+    e: f64,
+    f: f64,
+    g: f64,
+    k: f64,
 }
 
 impl Block {
     /// Returns the eigenvalues; in a conjugate pair, the one with positive imaginary part comes
     /// first.
     fn eigenvalues(self) -> [Complex<f64>; 2] {
-        let Self { p, q, r, s } = self;
-        let mean = 0.5 * (p + s);
-        let half = 0.5 * (p - s);
-        let squared = half * half + q * r;
-        if squared < 0.0 {
-            let imaginary = (-squared).sqrt();
+        let Self { e, f, g, k } = self;
+        let mean = 0.5 * (e + k);
+        let half_difference = 0.5 * (e - k);
+        let discriminant = half_difference * half_difference + f * g;
+        if discriminant < 0.0 {
+            let imaginary = (-discriminant).sqrt();
             return [
                 Complex::new(mean, imaginary),
                 Complex::new(mean, -imaginary),
             ];
         }
-        // `far`, the larger distance from s, is computed without cancellation; `near` follows from
-        // the product of both distances, -q r.
-        let far = half + squared.sqrt().copysign(half);
-        let near = if far == 0.0 { 0.0 } else { -q * r / far };
-        [Complex::from(s + far), Complex::from(s + near)]
+        // `far`, the larger distance from k, is computed without cancellation; `near` follows from
+        // the product of both distances, -f g.
+        let far = half_difference + discriminant.sqrt().copysign(half_difference);
+        let near = if far == 0.0 { 0.0 } else { -f * g / far };
+        [Complex::from(k + far), Complex::from(k + near)]
     }
 }
 
 /// Computes the real Schur form `A = Q T Q'` (step 1); returns Q and T. The iteration can stall,
 /// since a cyclic permutation is one of its fixed points; it is then repeated for the matrix
-/// reflected along two different axes in turn, which has the same eigenvalues. `None` if no attempt
-/// converges.
+/// reflected along two different axes in turn, which has the same eigenvalues but not the structure
+/// that stalls. `None` if no attempt converges.
 fn quasi_triangular(a: &DMatrix<f64>) -> Option<(DMatrix<f64>, DMatrix<f64>)> {
     const TRIES: i32 = 3;
     /// Maximum iteration count per eigenvalue; three or four are typical.
@@ -242,6 +242,7 @@ fn quasi_triangular(a: &DMatrix<f64>) -> Option<(DMatrix<f64>, DMatrix<f64>)> {
         return Some(schur.unpack());
     }
     for attempt in 1..TRIES {
+        // Any axis serves whose entries have no pattern.
         let axis = DVector::from_fn(size, |row, _| (1.0 + f64::from(attempt) * row as f64).sin())
             .normalize();
         let reflection = DMatrix::identity(size, size) - 2.0 * &axis * axis.transpose();
@@ -310,10 +311,10 @@ mod tests {
     #[test]
     fn real_eigenvalues_of_a_block_have_no_cancellation() {
         let [far, near] = Block {
-            p: 1e8,
-            q: 1.0,
-            r: 1.0,
-            s: 0.0,
+            e: 1e8,
+            f: 1.0,
+            g: 1.0,
+            k: 0.0,
         }
         .eigenvalues();
         // lambda^2 - 1e8 lambda - 1 = 0: the smaller root is -1e-8 (1 - 1e-16).

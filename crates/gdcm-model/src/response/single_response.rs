@@ -43,25 +43,29 @@ impl SingleResponse {
     /// Returns the model without its uncontrollable states: A is then upper Hessenberg, and b is
     /// zero except for its first entry.
     ///
-    /// Reflections align b with the first state, then each column of A with its subdiagonal; the
-    /// chain from the input ends at the first negligible subdiagonal entry, or at once if b is zero
-    /// (Van Dooren's staircase, IEEE Trans. Automatic Control 26(1), 1981, for one input).
+    /// Reflections align b with the first state, then each column of A with its subdiagonal, so
+    /// that the states form a chain from the input. The chain ends at the first negligible
+    /// subdiagonal entry, or at once if b is zero (Van Dooren's staircase, IEEE Trans. Automatic
+    /// Control 26(1), 1981, for one input).
     pub(super) fn controllable(mut self) -> Self {
         let size = self.a.nrows();
         let negligible = NEGLIGIBLE * self.a.norm();
-        for column in 0..size {
-            let below = if column == 0 {
+        for chained in 0..size {
+            // Effect of the input or, from the second state on, of the chain's last state on the
+            // states that are not in the chain yet.
+            let effect = if chained == 0 {
                 self.b.clone()
             } else {
-                let mut below = self.a.column(column - 1).into_owned();
-                below.rows_mut(0, column).fill(0.0);
-                below
+                let mut effect = self.a.column(chained - 1).into_owned();
+                effect.rows_mut(0, chained).fill(0.0);
+                effect
             };
-            let coupling = below.norm();
-            if coupling == 0.0 || (column > 0 && coupling <= negligible) {
-                return self.first_states(column);
+            // b is not compared with |A|: its size depends on the unit of the input.
+            let coupling = effect.norm();
+            if coupling == 0.0 || (chained > 0 && coupling <= negligible) {
+                return self.first_states(chained);
             }
-            self.reflect(below, column);
+            self.reflect(effect, chained);
         }
         self
     }
@@ -77,11 +81,11 @@ impl SingleResponse {
         }
     }
 
-    /// Reflects the states so that the vector `axis`, which is zero before index `at`, is zero
-    /// except at that index.
-    fn reflect(&mut self, axis: DVector<f64>, at: usize) {
-        let mut normal = axis.clone();
-        normal[at] += axis.norm().copysign(axis[at]);
+    /// Reflects the states so that the vector `effect`, which is zero before index `at`, becomes
+    /// zero except at that index.
+    fn reflect(&mut self, effect: DVector<f64>, at: usize) {
+        let mut normal = effect.clone();
+        normal[at] += effect.norm().copysign(effect[at]);
         normal.normalize_mut();
         let rows = normal.transpose() * &self.a;
         self.a -= 2.0 * &normal * rows;

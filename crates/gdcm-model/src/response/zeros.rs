@@ -136,7 +136,7 @@ struct ReducedResponse {
 /// A feed-through is treated as zero if a zero would otherwise be farther out than 1e10 times
 /// `|A|`, or, once a zero has been removed, if it is below 1e-12 times `|c|`, its rounding error.
 fn without_infinite_zeros(mut model: SingleResponse) -> Option<ReducedResponse> {
-    /// Maximum zero magnitude, relative to `|A|`.
+    /// Maximum zero magnitude, relative to `|A|`; a zero farther out counts as infinite.
     const FARTHEST: f64 = 1e10;
     /// Rounding error in a feed-through that was an entry of c, relative to `|c|`.
     const ROUNDING: f64 = 1e-12;
@@ -144,6 +144,7 @@ fn without_infinite_zeros(mut model: SingleResponse) -> Option<ReducedResponse> 
     let mut infinite = 0;
     loop {
         let states = model.a.nrows();
+        // The farthest zero is about |b| |c| / |d| out.
         let through_states = model.b.norm() * model.c.norm() / size;
         let rounding = if infinite == 0 {
             0.0
@@ -156,13 +157,13 @@ fn without_infinite_zeros(mut model: SingleResponse) -> Option<ReducedResponse> 
         if states == 0 {
             return None;
         }
-        let rest = states - 1;
+        let remaining = states - 1;
         // Omit the first entry of b: it is b's only nonzero entry, and scales the response without
         // moving any zero.
         model = SingleResponse {
-            a: model.a.view((1, 1), (rest, rest)).into_owned(),
-            b: model.a.view((1, 0), (rest, 1)).column(0).into_owned(),
-            c: model.c.rows(1, rest).into_owned(),
+            a: model.a.view((1, 1), (remaining, remaining)).into_owned(),
+            b: model.a.view((1, 0), (remaining, 1)).column(0).into_owned(),
+            c: model.c.rows(1, remaining).into_owned(),
             d: model.c[0],
         };
         infinite += 1;
@@ -200,9 +201,10 @@ fn output(model: &SingleResponse, states: &DVector<Complex<f64>>) -> Complex<f64
 /// Refines a zero by Newton's method (step 5), by a relative distance up to 1e-3; returns it
 /// unchanged if the response does not decrease.
 fn polished(model: &SingleResponse, zero: Complex<f64>) -> Complex<f64> {
-    /// Maximum Newton step count.
+    /// Maximum Newton step count; each step about doubles the number of correct digits.
     const MOST_STEPS: usize = 4;
-    /// Maximum relative distance between a zero and its refined value.
+    /// Maximum relative distance between a zero and its refined value, so that a refinement does
+    /// not end at a neighbouring zero.
     const CLOSE: f64 = 1e-3;
     let mut best = zero;
     let Some(mut last) = response_and_slope(model, zero) else {

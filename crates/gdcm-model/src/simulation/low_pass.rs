@@ -6,7 +6,8 @@ use nalgebra::DMatrix;
 
 use super::flight_record::Segment;
 
-/// Half the filter length, in periods of the cut-off frequency.
+/// Half the filter length, in periods of the cut-off frequency: a longer filter has a narrower
+/// transition, and extends the signal farther at its ends.
 const PERIODS: f64 = 4.0;
 /// Share of the Nyquist frequency above which a cut-off frequency removes practically nothing.
 const NEAR_NYQUIST: f64 = 0.8;
@@ -16,13 +17,14 @@ const LONGEST: f64 = 1e5;
 /// A symmetric finite impulse response: a Hamming-windowed sinc with unit sum.
 ///
 /// ```text
-/// h[n] ~ sin(wc n dt) / (pi n) (0.54 + 0.46 cos(pi n / M)),   n = -M ... M,   M = ceil(4 * 2 pi / (wc dt))
+/// h[n] = sin(wc n dt) / (pi n) (0.54 + 0.46 cos(pi n / M)) / sum,   n = -M ... M
+/// M = ceil(4 * 2 pi / (wc dt))
 /// ```
 ///
-/// Here n counts samples, wc is the cut-off frequency \[rad/s\], and dt the sample time \[s\]. The
-/// phase is zero. All channels in a record pass through the same filter, so that the responses
-/// between channels are unchanged. At both ends the signal is extended by odd reflection, `2 x[0] -
-/// x[n]`.
+/// Here n counts samples, wc is the cut-off frequency \[rad/s\], dt the sample time \[s\], and
+/// `sum` makes all h add up to 1. The phase is zero. All channels in a record pass through the same
+/// filter, so that the responses between channels are unchanged. At both ends the signal is
+/// extended by odd reflection, `2 x[0] - x[n]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LowPass {
     /// Coefficients `h[0] ... h[M]`; the others follow by symmetry.
@@ -36,16 +38,17 @@ impl LowPass {
     /// not positive, or if `M` would exceed 100 000.
     #[must_use]
     pub fn new(omega: f64, sample_time_s: f64) -> Option<Self> {
-        let step = omega * sample_time_s;
-        if !(step > 0.0 && step <= NEAR_NYQUIST * PI) {
+        // wc dt, in radians.
+        let angle = omega * sample_time_s;
+        if !(angle > 0.0 && angle <= NEAR_NYQUIST * PI) {
             return None;
         }
-        let length = (PERIODS * TAU / step).ceil();
-        if length > LONGEST {
+        let half_length = (PERIODS * TAU / angle).ceil();
+        if half_length > LONGEST {
             return None;
         }
-        let mut half: Vec<f64> = (0..=length as usize)
-            .map(|n| windowed_sinc(n as f64, step, length))
+        let mut half: Vec<f64> = (0..=half_length as usize)
+            .map(|n| windowed_sinc(n as f64, angle, half_length))
             .collect();
         let sum = half[0] + 2.0 * half.iter().skip(1).sum::<f64>();
         for h in &mut half {
@@ -120,15 +123,15 @@ impl LowPass {
     }
 }
 
-/// Returns `sin(wc n dt) / (pi n)` times the Hamming window with half length `length`, with `step =
-/// wc dt`.
-fn windowed_sinc(n: f64, step: f64, length: f64) -> f64 {
+/// Returns `sin(wc n dt) / (pi n)` times the Hamming window with half length `half_length`, with
+/// `angle = wc dt`.
+fn windowed_sinc(n: f64, angle: f64, half_length: f64) -> f64 {
     let sinc = if n == 0.0 {
-        step / PI
+        angle / PI
     } else {
-        (step * n).sin() / (PI * n)
+        (angle * n).sin() / (PI * n)
     };
-    sinc * (0.54 + 0.46 * (PI * n / length).cos())
+    sinc * (0.54 + 0.46 * (PI * n / half_length).cos())
 }
 
 /// Extends `samples` by `reach` values at each end, by repeated odd reflection; a single sample is

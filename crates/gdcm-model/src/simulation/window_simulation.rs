@@ -13,6 +13,12 @@ const RANK_TOLERANCE: f64 = 1e-9;
 /// squared difference between the outputs and `measured`, each output divided by its standard
 /// deviation in `std`; `None` if there is no such solution, or the outputs are not finite.
 ///
+/// ```text
+/// 1  forced: response to the inputs about their means, from a zero state
+/// 2  x0, offset: least squares for free x0 + offset = measured - forced
+/// 3  simulated = forced + free x0 + offset
+/// ```
+///
 /// `free` contains [`FirstOrderHold::free_responses`] for at least as many samples.
 pub(super) fn best_simulation(
     discretised: &FirstOrderHold,
@@ -23,10 +29,11 @@ pub(super) fn best_simulation(
 ) -> Option<DMatrix<f64>> {
     let (samples, outputs) = measured.shape();
     let states = free.ncols();
+    // Step 1.
     let forced = discretised.simulate(&DVector::zeros(states), &centred(inputs));
 
-    // Rows: one per sample n and output o, divided by the output's standard deviation. Columns:
-    // initial states, offsets, right-hand side.
+    // Step 2. Rows: one per sample n and output o, divided by the output's standard deviation.
+    // Columns: initial states, offsets, right-hand side.
     let mut rows = DMatrix::zeros(samples * outputs, states + outputs + 1);
     for n in 0..samples {
         for (o, std) in std.iter().enumerate() {
@@ -38,6 +45,7 @@ pub(super) fn best_simulation(
         }
     }
     let unknowns = least_squares(rows)?;
+    // Step 3.
     let free_part = free.rows(0, samples * outputs) * unknowns.rows(0, states);
     let simulated = DMatrix::from_fn(samples, outputs, |n, o| {
         forced[(n, o)] + free_part[n * outputs + o] + unknowns[states + o]

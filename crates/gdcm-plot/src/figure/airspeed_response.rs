@@ -10,7 +10,7 @@ use std::sync::Arc;
 use gdcm_model::dataset::{Band, Condition, ConditionId, Dataset, Pair};
 use gdcm_model::response::GainDelay;
 use gdcm_model::response::response_shape::ResponseShape;
-use gdcm_study::jobs::curve_jobs::AcrossCurves;
+use gdcm_study::jobs::across_job::AcrossCurves;
 use gdcm_study::{AcrossRole, Analysis};
 
 use super::bode_curve::{BodeCurve, CurveId};
@@ -29,7 +29,7 @@ pub struct AirspeedResponse<'a> {
     /// Conditions in the figure.
     pub conditions: &'a [ConditionId],
     pub pair: Pair,
-    /// Comparison band; phases are aligned up to its upper end.
+    /// Comparison band; phases are aligned over all frequencies up to its upper end.
     pub band: Band,
     /// Model responses in each condition.
     pub responses: &'a Arc<AcrossCurves>,
@@ -38,7 +38,7 @@ pub struct AirspeedResponse<'a> {
 /// A response's curves over the conditions.
 #[derive(Clone, Debug, Default)]
 pub struct AirspeedCurves {
-    /// Models in the requested roles, condition by condition.
+    /// Responses of the models in the requested roles, condition by condition.
     pub responses: Vec<BodeCurve>,
     /// Scheduled minus identified model in each condition.
     pub errors: Vec<BodeCurve>,
@@ -76,7 +76,7 @@ impl AirspeedResponse<'_> {
             }
             optima.extend(self.error(shapes, condition, AcrossRole::Corrected, &cache.omega));
         }
-        curves.optima = range_over(&optima, &cache.omega);
+        curves.optima = range_of_errors(&optima, &cache.omega);
         curves
     }
 
@@ -90,7 +90,7 @@ impl AirspeedResponse<'_> {
     ) -> Option<ResponseShape> {
         let shape = match role {
             AcrossRole::Identified => shapes.identified.as_ref()?,
-            AcrossRole::Representative => shapes.physics.as_ref()?,
+            AcrossRole::Representative => shapes.representative.as_ref()?,
             AcrossRole::Nominal => shapes.nominal.as_ref()?,
             AcrossRole::Scheduled | AcrossRole::Corrected => shapes.coupled.as_ref()?,
         };
@@ -171,25 +171,27 @@ fn difference(values: &[f64], others: &[f64]) -> Arc<[f64]> {
 }
 
 /// Returns the smallest and the largest error at each frequency; `None` without errors.
-fn range_over(errors: &[ResponseShape], omega: &[f64]) -> Option<BodeBand> {
+fn range_of_errors(errors: &[ResponseShape], omega: &[f64]) -> Option<BodeBand> {
     if errors.is_empty() {
         return None;
     }
-    let mut band = BodeBand {
+    let mut range = BodeBand {
         omega: omega.to_vec(),
         ..BodeBand::default()
     };
     for index in 0..omega.len() {
-        band.magnitude_db
-            .push(ends(errors.iter().map(|error| error.magnitude_db[index])));
-        band.phase_deg
-            .push(ends(errors.iter().map(|error| error.phase_deg[index])));
+        range.magnitude_db.push(smallest_and_largest(
+            errors.iter().map(|error| error.magnitude_db[index]),
+        ));
+        range.phase_deg.push(smallest_and_largest(
+            errors.iter().map(|error| error.phase_deg[index]),
+        ));
     }
-    Some(band)
+    Some(range)
 }
 
 /// Returns the smallest and the largest finite value; NaN without one.
-fn ends(values: impl Iterator<Item = f64>) -> [f64; 2] {
+fn smallest_and_largest(values: impl Iterator<Item = f64>) -> [f64; 2] {
     let mut ends = [f64::NAN; 2];
     for value in values {
         if value.is_finite() {
@@ -205,9 +207,9 @@ struct ConditionShapes {
     condition: ConditionId,
     identified: Option<ResponseShape>,
     /// Physics representative.
-    physics: Option<ResponseShape>,
-    /// Physics representative with the couplings, to which corrections are applied; equal to
-    /// `physics` if there are no couplings.
+    representative: Option<ResponseShape>,
+    /// Physics representative with physics parameters and couplings applied, to which corrections
+    /// apply; equal to `representative` if there are neither.
     coupled: Option<ResponseShape>,
     nominal: Option<ResponseShape>,
 }
@@ -215,7 +217,8 @@ struct ConditionShapes {
 /// A response's shapes in each condition, kept until the responses or the pair change.
 #[derive(Debug, Default)]
 pub struct AirspeedCache {
-    curves: Option<Arc<AcrossCurves>>,
+    /// Model responses from which the shapes were computed.
+    responses: Option<Arc<AcrossCurves>>,
     pair: Option<Pair>,
     omega: Arc<[f64]>,
     shapes: Vec<ConditionShapes>,
@@ -227,7 +230,7 @@ impl AirspeedCache {
     /// physics models with their condition's identified model or, without one, with that first
     /// condition.
     fn refresh(&mut self, response: &AirspeedResponse<'_>) {
-        if let Some(known) = &self.curves
+        if let Some(known) = &self.responses
             && Arc::ptr_eq(known, response.responses)
             && self.pair == Some(response.pair)
         {
@@ -235,6 +238,7 @@ impl AirspeedCache {
         }
         self.omega = response.responses.grid.omega().into();
         self.shapes.clear();
+        // Phase reference of the first condition that has one.
         let mut first = None;
         for condition in response.dataset.conditions() {
             let source = ShapeSource {
@@ -244,11 +248,11 @@ impl AirspeedCache {
             };
             let shapes = source.shapes(first.as_ref());
             if first.is_none() {
-                first.clone_from(shapes.any());
+                first.clone_from(shapes.phase_reference());
             }
             self.shapes.push(shapes);
         }
-        self.curves = Some(Arc::clone(response.responses));
+        self.responses = Some(Arc::clone(response.responses));
         self.pair = Some(response.pair);
     }
 }
@@ -269,7 +273,7 @@ impl ShapeSource<'_> {
         let reference = reference.as_ref();
         ConditionShapes {
             condition: self.condition.id(),
-            physics: self.shape(AcrossRole::Representative, reference),
+            representative: self.shape(AcrossRole::Representative, reference),
             coupled: self.shape(AcrossRole::Corrected, reference),
             nominal: self.shape(AcrossRole::Nominal, reference),
             identified,
@@ -279,10 +283,10 @@ impl ShapeSource<'_> {
     /// Returns the shape of a role's model before correction; `None` without its response.
     fn shape(&self, role: AcrossRole, reference: Option<&ResponseShape>) -> Option<ResponseShape> {
         let model = role.model(self.condition, self.response.analysis)?;
-        let found = self.response.responses.model(&model)?;
-        let response = match &found.coupled {
+        let model_responses = self.response.responses.model(&model)?;
+        let response = match &model_responses.coupled {
             Some(coupled) if role.is_corrected() => coupled,
-            _ => &found.response,
+            _ => &model_responses.response,
         };
         let shape = ResponseShape::new(response.curve(self.response.pair));
         Some(match reference {
@@ -295,7 +299,7 @@ impl ShapeSource<'_> {
 impl ConditionShapes {
     /// Returns the shape to which other conditions align their phases: the identified model's, or
     /// else the nominal model's.
-    fn any(&self) -> &Option<ResponseShape> {
+    fn phase_reference(&self) -> &Option<ResponseShape> {
         if self.identified.is_some() {
             &self.identified
         } else {

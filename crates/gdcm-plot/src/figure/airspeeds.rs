@@ -10,17 +10,17 @@ use std::sync::Arc;
 use gdcm_model::dataset::{ConditionId, Pair};
 use gdcm_model::progress::Unobserved;
 use gdcm_study::AcrossRole;
-use gdcm_study::jobs::curve_jobs::AcrossJob;
+use gdcm_study::jobs::across_job::AcrossJob;
 use gdcm_study::jobs::job::Job;
 use gdcm_study::results::analysis::Analysis;
 use gdcm_study::stages::condition_curves::{CURVE_POINTS, display_band};
 
 use super::airspeed_response::{AirspeedCache, AirspeedCurves, AirspeedResponse};
 use super::axis::{Axis, Range};
-use super::bode::{ResponsePlot, band_ground};
+use super::bode::{ResponsePlot, band_strip};
 use super::bode_curve::Pane;
 use super::bode_options::BodeOptions;
-use super::condition_source::settings_words;
+use super::caption_words::settings_words;
 use super::drawing::{Color, Dash, Hue, Stroke};
 use super::figure::{Figure, Panel, Plot};
 use super::frequency_panels::{FrequencyPanels, side_by_side};
@@ -70,7 +70,6 @@ pub fn airspeeds_figure(
         ..BodeOptions::default()
     };
     // Step 1.
-    let names: Vec<&str> = roles.iter().map(|role| role.name()).collect();
     let mut plots = Vec::new();
     for &pair in pairs {
         let response = AirspeedResponse {
@@ -92,6 +91,8 @@ pub fn airspeeds_figure(
     if plots.iter().all(|plot| plot.curves.responses.is_empty()) {
         return None;
     }
+    let names: Vec<&str> = roles.iter().map(|role| role.name()).collect();
+    let names = names.join(", ");
     let caption = format!(
         "{} {}",
         settings_words(dataset, settings),
@@ -101,29 +102,11 @@ pub fn airspeeds_figure(
     if let ([pair], [plot]) = (pairs, plots.as_slice())
         && !plot.curves.errors.is_empty()
     {
-        let optima = if plot.curves.optima.is_some() {
-            "; green: range of the errors at the optima of the conditions"
-        } else {
-            ""
-        };
-        let title = format!(
-            "{} · every condition: {}",
-            dataset.pair_name(*pair),
-            names.join(", ")
-        );
-        return Some(
-            Figure::new(title)
-                .caption(format!(
-                    "{caption} Error: scheduled minus identified model{optima}."
-                ))
-                .columns(2)
-                .aspect(ASPECT)
-                .shared_x()
-                .plots([plot.response_plot("Response"), plot.error_plot()]),
-        );
+        let title = format!("{} · every condition: {names}", dataset.pair_name(*pair));
+        return Some(plot.figure_with_error(title, &caption));
     }
     // Step 3.
-    let title = format!("Every condition: {}", names.join(", "));
+    let title = format!("Every condition: {names}");
     // `side_by_side` passes each of `pairs`, so that the default plot is never used.
     let figure = side_by_side(dataset, pairs, title, |pair| {
         match pairs.iter().position(|known| *known == pair) {
@@ -142,11 +125,28 @@ struct AirspeedPlots<'a> {
 }
 
 impl AirspeedPlots<'_> {
+    /// Shows the models' responses, and beside them the schedule's error.
+    fn figure_with_error(&self, title: String, caption: &str) -> Figure {
+        let optima = if self.curves.optima.is_some() {
+            "; green: range of the errors at the optima of the conditions"
+        } else {
+            ""
+        };
+        Figure::new(title)
+            .caption(format!(
+                "{caption} Error: scheduled minus identified model{optima}."
+            ))
+            .columns(2)
+            .aspect(ASPECT)
+            .shared_x()
+            .plots([self.response_plot("Response"), self.error_plot()])
+    }
+
     /// Builds the plot of the models' responses, magnitude above phase.
     fn response_plot(&self, title: &str) -> Plot {
         let contents = ResponsePlot {
             curves: &self.curves.responses,
-            bands: &[],
+            uncertainty_bands: &[],
             references: &[],
             ratio_unit: "",
             band: self.analysis.study.settings.band,
@@ -183,8 +183,8 @@ impl AirspeedPlots<'_> {
         let panels = FrequencyPanels {
             curves: &self.curves.errors,
             references: &[],
-            bands: &[],
-            strips: &[],
+            uncertainty_bands: &[],
+            noticed: &[],
             options: self.options,
         };
         let mut panel = panels.panel(pane, axis);
@@ -192,7 +192,7 @@ impl AirspeedPlots<'_> {
             panel = panel.with_ground(optima_envelope(optima, pane, self.options));
         }
         panel
-            .with_ground(band_ground(band, self.options))
+            .with_ground(band_strip(band, self.options))
             .with(Rule::horizontal(0.0, NO_ERROR))
     }
 }

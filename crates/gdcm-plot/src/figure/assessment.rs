@@ -17,7 +17,7 @@ pub use super::change_table::{ChangeColumn, ChangeTable};
 pub use super::evidence::evidence_figure;
 
 use super::axis::Axis;
-use super::condition_source::{settings_words, used_schedule_words};
+use super::caption_words::{settings_words, used_schedule_words};
 use super::drawing::{Color, Stroke};
 use super::figure::{Figure, Panel, Plot};
 use super::marks::{Bars, Note, Place, Rule};
@@ -104,7 +104,7 @@ fn change_panel(dataset: &Dataset, table: &AssessmentTable, pair: Pair) -> Panel
         .map(|condition| condition.id().to_string());
     let x = Axis::named("Condition", names);
     let y = Axis::linear("ΔJ [-]").including(0.0).at_least(1.0);
-    let mut parts = PARTS.map(|part| Bars {
+    let mut bar_groups = PARTS.map(|part| Bars {
         name: part.name.to_owned(),
         color: part.color,
         width: BAR,
@@ -117,15 +117,15 @@ fn change_panel(dataset: &Dataset, table: &AssessmentTable, pair: Pair) -> Panel
         let x = index as f64;
         match table.change(condition.id(), pair) {
             Some(change) => {
-                for (part, bars) in PARTS.iter().zip(&mut parts) {
-                    bars.bars.push([x, (part.value)(change)]);
+                for (part, group) in PARTS.iter().zip(&mut bar_groups) {
+                    group.bars.push([x, (part.value)(change)]);
                 }
             }
             None => left_out.push(left_out_note(x)),
         }
     }
     Panel::new(x, y)
-        .with_all(parts)
+        .with_all(bar_groups)
         .with(Rule::horizontal(0.0, ZERO))
         .with_all(left_out)
 }

@@ -1,11 +1,12 @@
 //! Responses in a condition: magnitude above phase over frequency (Figures 2 and 5), with the
 //! measured coherence below; and an overview with the magnitudes of all responses.
 //!
-//! A *held* response is one that the correction must match exactly (M1). A *lead* is a filter that
+//! A *held* response is one that the correction must match exactly (M1). J is a response's cost,
+//! its weighted squared mismatch to the identified reference (M4). A *lead* is a filter that
 //! advances the phase in a channel; the corrected model must not be used above the band then
 //! (M15.6).
 
-use gdcm_model::dataset::{Band as BandOfComparison, Pair};
+use gdcm_model::dataset::{Band, Pair};
 use gdcm_model::units::db_to_ratio;
 
 pub use super::bode_options::BodeOptions;
@@ -18,7 +19,7 @@ use super::condition_source::ConditionSource;
 use super::drawing::{Color, Dash, Hue, Stroke};
 use super::figure::{Figure, Panel, Plot};
 use super::frequency_panels::{FrequencyPanels, figure_of_pairs};
-use super::marks::{Band, Note, Place, Rule};
+use super::marks::{Note, Place, Rule, Strip};
 use super::muad::muad_about;
 use super::reference_line::ReferenceLine;
 use super::responses::{BodeBand, ResponseCache, fitted_values, uncertainty_bands};
@@ -53,7 +54,7 @@ fn condition_plot(source: &ConditionSource<'_>, pair: Pair, options: &BodeOption
     let curves = source.response_curves(pair, options, &mut ResponseCache::default());
     let contents = ResponsePlot {
         curves: &curves,
-        bands: &uncertainty_bands(source.dataset(), pair, &curves),
+        uncertainty_bands: &uncertainty_bands(source.dataset(), pair, &curves),
         references: &muad_about(&curves, options),
         ratio_unit: &ConditionSource::ratio_unit(source.dataset(), pair),
         band,
@@ -61,7 +62,7 @@ fn condition_plot(source: &ConditionSource<'_>, pair: Pair, options: &BodeOption
     };
     let plot = contents.plot();
     match coherence_panel(source, pair, options) {
-        Some(panel) => plot.panel(panel.with_ground(band_ground(band, options))),
+        Some(panel) => plot.panel(panel.with_ground(band_strip(band, options))),
         None => plot,
     }
 }
@@ -69,11 +70,12 @@ fn condition_plot(source: &ConditionSource<'_>, pair: Pair, options: &BodeOption
 /// Contents of a response's plot, magnitude above phase.
 pub(super) struct ResponsePlot<'a> {
     pub(super) curves: &'a [BodeCurve],
-    pub(super) bands: &'a [BodeBand],
+    pub(super) uncertainty_bands: &'a [BodeBand],
     pub(super) references: &'a [ReferenceLine],
     /// Unit for magnitudes drawn as ratios.
     pub(super) ratio_unit: &'a str,
-    pub(super) band: BandOfComparison,
+    /// Comparison band.
+    pub(super) band: Band,
     pub(super) options: &'a BodeOptions,
 }
 
@@ -83,8 +85,8 @@ impl ResponsePlot<'_> {
         let magnitude = self.magnitude_panel();
         let phase = self.phase_panel();
         Plot::default()
-            .panel(self.on_grounds(magnitude).weight(MAGNITUDE_WEIGHT))
-            .panel(self.on_grounds(phase))
+            .panel(self.with_backgrounds(magnitude).weight(MAGNITUDE_WEIGHT))
+            .panel(self.with_backgrounds(phase))
     }
 
     /// Builds the magnitude panel, with labelled lines at the marked frequencies.
@@ -132,8 +134,8 @@ impl ResponsePlot<'_> {
         FrequencyPanels {
             curves: self.curves,
             references: self.references,
-            bands: self.bands,
-            strips: &[],
+            uncertainty_bands: self.uncertainty_bands,
+            noticed: &[],
             options: self.options,
         }
     }
@@ -168,19 +170,19 @@ impl ResponsePlot<'_> {
     }
 
     /// Returns the panel with the band and the invalid frequencies shaded.
-    fn on_grounds(&self, panel: Panel) -> Panel {
-        let band = band_ground(self.band, self.options);
+    fn with_backgrounds(&self, panel: Panel) -> Panel {
+        let band = band_strip(self.band, self.options);
         match self.invalid_up_to() {
             Some(up_to) => panel
-                .with_ground(self.invalid_ground(up_to))
+                .with_ground(self.invalid_strip(up_to))
                 .with_ground(band),
             None => panel.with_ground(band),
         }
     }
 
     /// Returns the shading from the band to `up_to` \[rad/s\], where a model with leads is invalid.
-    fn invalid_ground(&self, up_to: f64) -> Band {
-        Band {
+    fn invalid_strip(&self, up_to: f64) -> Strip {
+        Strip {
             range: self.options.in_unit(self.band.max(), up_to),
             color: INVALID,
             key: "corrected model not valid (leads)".to_owned(),
@@ -189,8 +191,8 @@ impl ResponsePlot<'_> {
 }
 
 /// Shades the comparison band.
-pub(super) fn band_ground(band: BandOfComparison, options: &BodeOptions) -> Band {
-    Band {
+pub(super) fn band_strip(band: Band, options: &BodeOptions) -> Strip {
+    Strip {
         range: options.in_unit(band.min(), band.max()),
         color: BAND,
         key: "comparison band".to_owned(),
@@ -222,14 +224,14 @@ fn overview_plot(source: &ConditionSource<'_>, pair: Pair, options: &BodeOptions
     let panels = FrequencyPanels {
         curves: &source.response_curves(pair, options, &mut ResponseCache::default()),
         references: &[],
-        bands: &[],
-        strips: &[],
+        uncertainty_bands: &[],
+        noticed: &[],
         options,
     };
     let axis = Axis::linear("Magnitude [dB]").at_least(LEAST_DB);
     let mut panel = panels
         .panel(Pane::Magnitude, axis)
-        .with_ground(band_ground(source.study.settings.band, options));
+        .with_ground(band_strip(source.study.settings.band, options));
     let mut title = source.dataset().pair_name(pair);
     if let Some(analysis) = source.analysis {
         if let Some(cost) = &analysis.cost[pair] {

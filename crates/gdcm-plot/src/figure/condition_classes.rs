@@ -64,8 +64,9 @@ pub fn class_names(state: &FlightState) -> [Option<String>; 2] {
     ]
 }
 
-/// Returns `low altitude, high weight`, or `optimum` for a condition without classes; if
-/// applicable, followed by `held out` or `not in the schedule`.
+/// Returns the name of a condition's group of dots, the optima of its class: `low altitude, high
+/// weight`, or just `optimum` without classes; if applicable, followed by `held out` or `not in the
+/// schedule`.
 pub(super) fn class_words(state: &FlightState, choice: &ConditionChoice) -> String {
     let mut words: Vec<String> = class_names(state).into_iter().flatten().collect();
     if words.is_empty() {

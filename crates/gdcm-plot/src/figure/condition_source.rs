@@ -1,5 +1,5 @@
-//! Data behind a condition's figures: its models with their roles, the representative physics model
-//! after each correction, and descriptions.
+//! Data behind a condition's figures: its models with their roles, and the representative physics
+//! model after each correction.
 //!
 //! A *bundle* contains a condition's physics models, or its identified models. Its *representative*
 //! is the model with the smallest mean distance to the others (M5), unless the engineer has chosen
@@ -9,21 +9,17 @@ use std::sync::Arc;
 
 use gdcm_method::correction::ChannelCorrection;
 use gdcm_method::fidelity::SUGGESTION_RATIO;
-use gdcm_method::schedule::{Schedule, ScheduleKind, ScheduleSettings, ScheduledQuantity};
-use gdcm_model::dataset::condition::FlightState;
+use gdcm_method::schedule::Schedule;
 use gdcm_model::dataset::{BundleKind, ConditionId, Dataset, Model, ModelId, Pair};
-use gdcm_model::number_format::compact;
 use gdcm_model::response::GainDelay;
 use gdcm_model::units::s_to_ms;
-use gdcm_study::decisions::settings::Settings;
 use gdcm_study::stages::condition_curves::ConditionCurves;
-use gdcm_study::{
-    Analysis, ConditionAnalysis, CouplingCorrection, PhaseCorrection, PhysicsCorrection, Study,
-};
+use gdcm_study::{ConditionAnalysis, Study};
 
 use super::bode_curve::BodeCurve;
 pub use super::bode_curve::CurveId;
 use super::bode_options::BodeOptions;
+use super::caption_words::{condition_words, settings_words};
 use super::role::Role;
 
 /// Data from which a condition's figures are drawn.
@@ -65,11 +61,11 @@ pub(super) struct CorrectedModel<'a> {
 }
 
 /// A correction of the representative physics model, with the curve that it has in figures.
-struct Version<'c> {
+struct CorrectedVersion<'c> {
     id: CurveId,
     role: Role,
     /// Text appended to the model's name in the label.
-    words: &'static str,
+    name_suffix: &'static str,
     correction: &'c ChannelCorrection,
 }
 
@@ -112,7 +108,7 @@ impl<'a> ConditionSource<'a> {
 
     /// Returns the index of the identified model to which the other models are compared: the
     /// representative, or the first model before the bundle is compared.
-    pub(super) fn reference(&self) -> usize {
+    pub(super) fn reference_index(&self) -> usize {
         let name = self.representative(BundleKind::Identified);
         name.and_then(|name| self.curves.condition.position(BundleKind::Identified, name))
             .unwrap_or(0)
@@ -209,27 +205,27 @@ impl<'a> ConditionSource<'a> {
             return Vec::new();
         };
         let mut models = Vec::new();
-        let own = Version {
+        let own = CorrectedVersion {
             id: CurveId::Corrected,
             role: Role::Corrected,
-            words: "corrected",
+            name_suffix: "corrected",
             correction: &analysis.correction,
         };
         models.extend(self.corrected_model(analysis, own, pair, options));
         if let Some(schedule) = self.schedule {
-            let scheduled = Version {
+            let scheduled = CorrectedVersion {
                 id: CurveId::Scheduled,
                 role: Role::Scheduled,
-                words: "scheduled",
+                name_suffix: "scheduled",
                 correction: &schedule.at_state(self.curves.condition.flight_state()),
             };
             models.extend(self.corrected_model(analysis, scheduled, pair, options));
         }
-        if analysis.compensated.is_some() {
-            let without_leads = Version {
+        if analysis.has_leads() {
+            let without_leads = CorrectedVersion {
                 id: CurveId::WithoutLeads,
                 role: Role::WithoutLeads,
-                words: "corrected without leads",
+                name_suffix: "corrected without leads",
                 correction: &analysis.correction.clone().without_leads(),
             };
             models.extend(self.corrected_model(analysis, without_leads, pair, options));
@@ -248,7 +244,7 @@ impl<'a> ConditionSource<'a> {
     fn corrected_model(
         &self,
         result: &'a ConditionAnalysis,
-        version: Version<'_>,
+        version: CorrectedVersion<'_>,
         pair: Pair,
         options: &BodeOptions,
     ) -> Option<CorrectedModel<'a>> {
@@ -257,7 +253,7 @@ impl<'a> ConditionSource<'a> {
         let gain = version.correction.net_gain(pair);
         let delay_ms = s_to_ms(version.correction.net_delay_s(pair));
         let curve = BodeCurve {
-            label: format!("{name}, {}", version.words),
+            label: format!("{name}, {}", version.name_suffix),
             detail: format!("net gain {gain:.3}, net delay {delay_ms:.1} ms"),
             hidden: options.hidden.contains(&version.role),
             ..BodeCurve::new(version.id, version.role)
@@ -278,10 +274,10 @@ impl<'a> ConditionSource<'a> {
         pair: Pair,
         options: &BodeOptions,
     ) -> Option<CorrectedModel<'a>> {
-        let version = Version {
+        let version = CorrectedVersion {
             id: CurveId::Coupled,
             role: Role::Coupled,
-            words: "couplings alone",
+            name_suffix: "couplings alone",
             correction: &analysis.correction,
         };
         let mut model = self.corrected_model(analysis, version, pair, options)?;
@@ -299,10 +295,10 @@ impl<'a> ConditionSource<'a> {
         pair: Pair,
         options: &BodeOptions,
     ) -> Option<CorrectedModel<'a>> {
-        let version = Version {
+        let version = CorrectedVersion {
             id: CurveId::Variant,
             role: Role::Variant,
-            words: "corrected",
+            name_suffix: "corrected",
             correction: &result.correction,
         };
         let mut model = self.corrected_model(result, version, pair, options)?;
@@ -320,73 +316,4 @@ fn bracketed(unit: &str) -> String {
     } else {
         unit.to_owned()
     }
-}
-
-/// Returns `Condition 10: 60 kt, low altitude, high weight`, or `Condition 10` without a name.
-pub fn condition_words(FlightState { id, name, .. }: &FlightState) -> String {
-    if name.is_empty() {
-        format!("Condition {id}")
-    } else {
-        format!("Condition {id}: {name}")
-    }
-}
-
-/// Describes the dataset and the settings, for captions.
-pub(super) fn settings_words(dataset: &Dataset, settings: &Settings) -> String {
-    let low = compact(settings.band.min());
-    let high = compact(settings.band.max());
-    let phase = match settings.phase {
-        PhaseCorrection::Delay => "",
-        PhaseCorrection::None => " No phase correction.",
-        PhaseCorrection::Lead => " A delay or a lead filter in each channel.",
-    };
-    let couplings = match settings.couplings {
-        CouplingCorrection::None => "",
-        CouplingCorrection::Mixing => " Couplings requested: mixing of the inputs.",
-        CouplingCorrection::MixingAndFeedback => " Couplings requested: mixing and feedback.",
-    };
-    let physics = match settings.physics {
-        PhysicsCorrection::Off => String::new(),
-        requested => format!(" Physics parameters requested: {}.", requested.name()),
-    };
-    format!(
-        "{}. Band {low} to {high} rad/s, {} frequencies; \u{3b1} {} for gains, {} for delays.{phase}{physics}{couplings}",
-        dataset.name(),
-        settings.points,
-        compact(settings.alpha_gain),
-        compact(settings.alpha_delay)
-    )
-}
-
-/// Returns `ln k` or `k`.
-pub fn quantity_symbol(quantity: ScheduledQuantity) -> &'static str {
-    match quantity {
-        ScheduledQuantity::LnGain => "ln k",
-        ScheduledQuantity::Gain => "k",
-    }
-}
-
-/// Describes the schedule of an analysis with the degree used, which may be lower than requested.
-pub(super) fn used_schedule_words(analysis: &Analysis) -> String {
-    let mut settings = analysis.study.settings.schedule;
-    if let Ok(schedule) = &analysis.schedule
-        && let Some(degree) = schedule.degree()
-    {
-        settings.kind = ScheduleKind::Polynomial { degree };
-    }
-    schedule_words(&settings)
-}
-
-/// Describes the schedule: `polynomial of degree 2 of ln k`.
-pub fn schedule_words(settings: &ScheduleSettings) -> String {
-    let kind = match settings.kind {
-        ScheduleKind::Polynomial { degree } => format!("polynomial of degree {degree}"),
-        ScheduleKind::Table => "table".to_owned(),
-    };
-    let quantity = quantity_symbol(settings.quantity);
-    let second = match settings.second {
-        Some(variable) => format!(", with {variable} in the middle of its range"),
-        None => String::new(),
-    };
-    format!("{kind} of {quantity}{second}")
 }

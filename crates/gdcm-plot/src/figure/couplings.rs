@@ -10,7 +10,7 @@ use gdcm_words::couplings::couplings_heading;
 use super::axis::{Axis, FrequencyUnit, Range};
 use super::drawing::{Color, Dash, Hue, Stroke};
 use super::figure::{Figure, Panel, Plot};
-use super::marks::{Band, Curve, Rule};
+use super::marks::{Curve, Rule, Strip};
 use super::pole_shift::{PoleShiftNames, pole_shift_marks};
 
 /// Loop curves for the other conditions.
@@ -23,7 +23,8 @@ const RINGING: Stroke = Stroke::dashed(Color::new(Hue::Warning), 1.0, Dash::Shor
 const BAND: Color = Color::new(Hue::Accent).tint(12);
 /// Imaginary axis in plots of poles.
 pub(super) const AXIS: Stroke = Stroke::solid(Color::DIM, 0.6);
-/// Magnitude up to which poles are displayed, relative to the band's upper end.
+/// Magnitude up to which poles are displayed, relative to the band's upper end: poles far above the
+/// band would squeeze those within it.
 const SHOWN_POLES: f64 = 1.5;
 
 /// Plots the minimum singular value of `I - K H` over frequency for every condition, and the
@@ -70,7 +71,7 @@ fn loop_plot(assessment: &CouplingsAssessment, shown: ConditionId, unit: Frequen
         .iter()
         .map(|omega| unit.of_omega(*omega))
         .collect();
-    let band = Band {
+    let band = Strip {
         range: Range::new(
             unit.of_omega(assessment.band.min()),
             unit.of_omega(assessment.band.max()),

@@ -133,6 +133,7 @@ impl Drawing {
     /// Returns the drawing with fewer points; every omitted point lies within `tolerance_pt` of the
     /// remaining line.
     pub fn thinned(self, tolerance_pt: f64) -> Self {
+        // Square, since both coordinates are lengths on paper.
         let pixel = Pixel {
             width: tolerance_pt,
             tolerance: tolerance_pt,

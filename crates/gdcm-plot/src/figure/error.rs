@@ -1,12 +1,13 @@
-//! Deviation between a response and its reference at each frequency, as used by the fit (M6).
+//! Error of a physics model's response at each frequency, as used by the fit (M6):
 //!
 //! ```text
 //! magnitude  20 log10 |H_ref| / |H_sim|  [dB]
 //! phase      Delta phi  [deg], or Delta phi / omega  [ms]: phase of H_sim minus phase of H_ref
 //! ```
 //!
-//! H_sim is a physics model's response, H_ref that of the identified reference. Both deviations are
-//! zero for a perfect model; G and D are the gain and the delay that the model lacks.
+//! H_sim is the physics model's response, H_ref that of the identified reference. Both errors are
+//! zero for a perfect model. The magnitude is drawn as reference over model, so that it lies about
+//! G, the gain that the model lacks; the phase lies about the phase of D, the delay that it lacks.
 
 use std::sync::Arc;
 
@@ -23,8 +24,8 @@ use super::error_cache::{ErrorKey, ErrorSource};
 use super::figure::{Figure, Plot};
 use super::frequency_panels::{FrequencyPanels, figure_of_pairs};
 
-/// Plots the deviations used by the fit for `pairs`: for every physics model that is not rejected,
-/// and for the representative before and after its correction, with G, D and the bounds.
+/// Plots the errors used by the fit for `pairs`: for every physics model that is not rejected, and
+/// for the representative before and after its correction, with G, D and the bounds.
 pub fn error_figure(source: &ConditionSource<'_>, pairs: &[Pair], options: &BodeOptions) -> Figure {
     figure_of_pairs(source, pairs, Some("Error"), |pair| {
         error_plot(source, pair, options)
@@ -36,8 +37,8 @@ fn error_plot(source: &ConditionSource<'_>, pair: Pair, options: &BodeOptions) -
     let panels = FrequencyPanels {
         curves: &curves,
         references: &source.error_references(pair, options, &curves),
-        bands: &[],
-        strips: &noticed(&curves, options),
+        uncertainty_bands: &[],
+        noticed: &noticed(&curves, options),
         options,
     };
     let ratio = Axis::linear("|ident.| / |model| [dB]")
@@ -58,9 +59,9 @@ fn error_plot(source: &ConditionSource<'_>, pair: Pair, options: &BodeOptions) -
 }
 
 impl ConditionSource<'_> {
-    /// Returns the deviations over the band: for every physics model that is not rejected; if there
-    /// are any, for the reference as the line at zero; and for the representative after each
-    /// correction. `cache` keeps the computed deviations until their sources change.
+    /// Returns the errors over the band: for every physics model that is not rejected; if there are
+    /// any, for the reference as the line at zero; and for the representative after each
+    /// correction. `cache` keeps the computed errors until their sources change.
     pub fn error_curves(
         &self,
         pair: Pair,
@@ -68,7 +69,7 @@ impl ConditionSource<'_> {
         cache: &mut ErrorCache,
     ) -> Vec<BodeCurve> {
         let band = self.study.settings.band;
-        let reference = self.reference();
+        let reference = self.reference_index();
         cache.refresh(ErrorSource {
             curves: Arc::clone(self.curves),
             key: ErrorKey {
@@ -79,36 +80,37 @@ impl ConditionSource<'_> {
                 unit: options.phase_error,
             },
         });
-        let mut drawn = Vec::new();
+        let mut curves = Vec::new();
         for model in self.models(BundleKind::Physics, options) {
             if !model.rejected
                 && let Some(error) = &cache.errors[model.index]
             {
                 let curve = self.curve_of(model);
-                drawn.push(error.drawn.apply(curve, &cache.omega));
+                curves.push(error.drawn.apply(curve, &cache.omega));
             }
         }
-        if !drawn.is_empty() {
+        if !curves.is_empty() {
             for model in self.models(BundleKind::Identified, options) {
                 if model.index == reference {
                     let curve = self.curve_of(model);
-                    drawn.push(curve.with(&cache.omega, &cache.zero, &cache.zero));
+                    curves.push(curve.with(&cache.omega, &cache.zero, &cache.zero));
                 }
             }
         }
         for corrected in self.corrected_models(pair, options) {
             let shape = if corrected.result.has_changed_physics() {
-                let curves = self.curves;
-                let coupled = curves.with_couplings(corrected.result, corrected.model);
+                let coupled = self
+                    .curves
+                    .with_couplings(corrected.result, corrected.model);
                 cache.shape(&coupled)
             } else {
                 cache.model_shape(corrected.model)
             };
             if let Some(shape) = shape {
                 let error = shape.drawn(corrected.correction, &cache.omega, options.phase_error);
-                drawn.push(error.apply(corrected.curve, &cache.omega));
+                curves.push(error.apply(corrected.curve, &cache.omega));
             }
         }
-        drawn
+        curves
     }
 }

@@ -1,7 +1,7 @@
-//! Deviations between a response and its reference at each frequency, computed once and kept until
-//! their sources change. H_sim and H_ref are defined in `error.rs`. If coherence is ignored, all
-//! frequencies *count*; otherwise those in the reference's valid band at which its coherence
-//! reaches the minimum in the settings (M4a).
+//! Errors of physics models' responses at each frequency, computed once and kept until their
+//! sources change. H_sim is a physics model's response, H_ref that of the identified reference. If
+//! coherence is ignored, all frequencies *count*; otherwise those in the reference's valid band at
+//! which its coherence reaches the minimum in the settings (M4a).
 //!
 //! The *branch* of a phase is the number of whole turns at each frequency, chosen in M6b so that
 //! the phase follows a delay.
@@ -18,17 +18,18 @@ use gdcm_study::stages::condition_curves::ConditionCurves;
 use super::axis::PhaseErrorUnit;
 use super::bode_curve::BodeCurve;
 
-/// Deviation between a response and the reference, with the phase on the branch chosen in M6b.
+/// Error of a response against the reference, with the phase on the branch chosen in M6b.
 #[derive(Clone, Debug)]
 pub(super) struct ErrorShape {
-    /// `20 log10 |H_sim| / |H_ref|`.
+    /// `20 log10 |H_sim| / |H_ref|`: the inverse of the drawn ratio, so that a correction of H_sim
+    /// adds its own magnitude.
     mismatch_db: Vec<f64>,
     /// `Delta phi(H_sim, H_ref)` \[rad\] (M3, M6b): never the difference between two separately
     /// unwrapped phases.
     phase: Vec<f64>,
 }
 
-/// Deviation in the units in which it is drawn.
+/// Error in the units in which it is drawn.
 #[derive(Clone, Debug)]
 pub(super) struct DrawnError {
     /// `20 log10 |H_ref| / |H_sim|`.
@@ -45,7 +46,7 @@ impl DrawnError {
 }
 
 impl ErrorShape {
-    /// Computes the deviation at the frequencies that count; NaN at the others (M4a). `None` if no
+    /// Computes the error at the frequencies that count; NaN at the others (M4a). `None` if no
     /// frequency counts.
     fn new(
         simulated: &PolarCurve,
@@ -61,7 +62,7 @@ impl ErrorShape {
         })
     }
 
-    /// Returns the deviation, as drawn over `omega` \[rad/s\], after the correction is applied to
+    /// Returns the error, as drawn over `omega` \[rad/s\], after the correction is applied to
     /// the simulated response (M10); the phase stays on its branch.
     pub(super) fn drawn(
         &self,
@@ -88,7 +89,7 @@ impl ErrorShape {
     }
 }
 
-/// Choices that determine a response's deviations.
+/// Choices that determine a response's errors.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct ErrorKey {
     pub(super) pair: Pair,
@@ -101,7 +102,7 @@ pub(super) struct ErrorKey {
     pub(super) unit: PhaseErrorUnit,
 }
 
-/// Responses and choices from which a deviation is computed.
+/// Responses and choices from which an error is computed.
 #[derive(Clone, Debug)]
 pub(super) struct ErrorSource {
     pub(super) curves: Arc<ConditionCurves>,
@@ -113,7 +114,7 @@ impl ErrorSource {
         Arc::ptr_eq(&self.curves, &other.curves) && self.key == other.key
     }
 
-    /// Computes a response's deviation over `omega`, the frequencies in the band. `None` if the
+    /// Computes a response's error over `omega`, the frequencies in the band. `None` if the
     /// response or the reference is zero or not finite at any of them, or if no frequency counts
     /// (M4a).
     pub(super) fn shape(&self, response: &FrequencyResponse, omega: &[f64]) -> Option<ErrorShape> {
@@ -150,22 +151,22 @@ impl ErrorSource {
     }
 }
 
-/// Deviation before correction, for one physics model.
+/// Error before correction, for one physics model.
 #[derive(Debug)]
 pub(super) struct ModelError {
     shape: ErrorShape,
     pub(super) drawn: DrawnError,
 }
 
-/// A response's deviations for every physics model in a condition, kept until their source changes.
+/// A response's errors for every physics model in a condition, kept until their source changes.
 #[derive(Debug, Default)]
 pub struct ErrorCache {
     source: Option<ErrorSource>,
     pub(super) omega: Arc<[f64]>,
-    /// Zero at each frequency: the reference's deviation from itself.
+    /// Zero at each frequency: the reference's error from itself.
     pub(super) zero: Arc<[f64]>,
-    /// Deviations of the physics models before correction, in bundle order; `None` for a model
-    /// without a deviation.
+    /// Errors of the physics models before correction, in bundle order; `None` for a model
+    /// without an error.
     pub(super) errors: Vec<Option<ModelError>>,
 }
 
@@ -189,13 +190,13 @@ impl ErrorCache {
         self.source = Some(source);
     }
 
-    /// Returns a physics model's deviation before correction; `None` if it has none.
+    /// Returns a physics model's error before correction; `None` if it has none.
     pub(super) fn model_shape(&self, model: usize) -> Option<ErrorShape> {
         let error = self.errors[model].as_ref()?;
         Some(error.shape.clone())
     }
 
-    /// Computes the deviation of a response that is not in the cache; `None` as for
+    /// Computes the error of a response that is not in the cache; `None` as for
     /// [`ErrorSource::shape`], or if the cache is empty.
     pub(super) fn shape(&self, response: &FrequencyResponse) -> Option<ErrorShape> {
         self.source.as_ref()?.shape(response, &self.omega)

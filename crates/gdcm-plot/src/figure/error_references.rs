@@ -1,8 +1,9 @@
-//! Reference lines in plots of deviations (`error` in names): targets, bounds, quantiles and MUAD
-//! envelopes. A positive delay is a delay that the physics model lacks.
+//! Reference lines in error plots: G and D, bounds, quantiles, and the envelopes of maximum
+//! unnoticeable added dynamics (MUAD).
 //!
-//! G and D are the gain and the delay that the physics representative lacks (M6); the *bounds*
-//! limit each channel's gain and delay in the fit (M7).
+//! The *delta* gain G and the *delta* delay D are the gain and the delay that the physics
+//! representative lacks (M6); the *bounds* limit each channel's gain and delay in the fit (M7). A
+//! positive delay is a delay that the physics model lacks.
 
 use gdcm_method::correction::delta::GainSource;
 use gdcm_model::dataset::{BundleKind, Pair};
@@ -21,7 +22,7 @@ use super::reference_line::{Level, ReferenceKind, ReferenceLine};
 
 impl ConditionSource<'_> {
     /// Returns lines at G and D, at the channel bounds, and at quantiles of the representative's
-    /// deviation (M6, M7); where requested, also the MUAD envelopes. Empty before the condition is
+    /// error (M6, M7); where requested, also the MUAD envelopes. Empty before the condition is
     /// compared. Lines at quantiles are returned even if the representative's curve in `drawn` is
     /// hidden.
     pub fn error_references(
@@ -61,19 +62,20 @@ fn delta_lines(
     unit: PhaseErrorUnit,
 ) -> Vec<ReferenceLine> {
     let mut lines = Vec::new();
-    let is_mean =
+    // With leads, G always comes from the representatives.
+    let is_mean_of_pairs =
         settings.gain_source == GainSource::MeanOfPairs && !settings.is_gain_source_idle();
-    if let Some(gain) = analysis.wanted_gain(pair) {
+    if let Some(gain) = analysis.delta_gain(pair) {
         let label = format!("G {gain:.3} ({} dB)", one_decimal(ratio_to_db(gain)));
         let mut line = gain_line(ReferenceKind::Delta, label, gain);
-        line.note = if is_mean {
+        line.note = if is_mean_of_pairs {
             ", mean over all pairs of kept models".to_owned()
         } else {
             ", median over the band".to_owned()
         };
         lines.push(line);
     }
-    if let Some(delay_s) = analysis.wanted_delay_s(pair) {
+    if let Some(delay_s) = analysis.delta_delay_s(pair) {
         let label = format!("D {} ms", one_decimal(s_to_ms(delay_s)));
         let mut line = delay_line(ReferenceKind::Delta, label, delay_s, unit);
         if delay_s < 0.0 {
@@ -98,19 +100,19 @@ fn bound_lines(analysis: &ConditionAnalysis, unit: PhaseErrorUnit) -> Vec<Refere
     ]
 }
 
-/// Returns lines at the quantiles `q` and `1 - q` of a response's deviation, as in M7 but for this
+/// Returns lines at the quantiles `q` and `1 - q` of a response's error, as in M7 but for this
 /// response alone.
 fn quantile_lines(curve: &BodeCurve, q: f64, unit: PhaseErrorUnit) -> Vec<ReferenceLine> {
     let mut ratios_db = curve.magnitude_db.to_vec();
     let mut delays_s = Vec::new();
     for (omega, phase) in curve.omega.iter().zip(curve.phase_deg.iter()) {
-        // For deviations, `phase_deg` holds the phase error in `unit`.
+        // In an error curve, `phase_deg` holds the phase error in `unit`.
         delays_s.push(match unit {
             PhaseErrorUnit::Degree => phase.to_radians() / omega,
             PhaseErrorUnit::Millisecond => 1e-3 * phase,
         });
     }
-    // Frequencies that do not count have NaN as their deviation.
+    // Frequencies that are excluded from the fit have NaN as their error.
     ratios_db.retain(|ratio| ratio.is_finite());
     delays_s.retain(|delay| delay.is_finite());
     let mut lines = Vec::new();
@@ -137,7 +139,7 @@ fn delay_line(
     unit: PhaseErrorUnit,
 ) -> ReferenceLine {
     let level = match unit {
-        PhaseErrorUnit::Degree => Level::PerOmega(delay_s.to_degrees()),
+        PhaseErrorUnit::Degree => Level::ProportionalToOmega(delay_s.to_degrees()),
         PhaseErrorUnit::Millisecond => Level::Constant(s_to_ms(delay_s)),
     };
     ReferenceLine::new(Pane::Phase, kind, label, level)
@@ -163,7 +165,7 @@ mod tests {
         let level = |unit| delay_line(ReferenceKind::Delta, String::new(), 0.1, unit).level;
         assert_eq!(
             level(PhaseErrorUnit::Degree),
-            Level::PerOmega(0.1f64.to_degrees())
+            Level::ProportionalToOmega(0.1f64.to_degrees())
         );
         assert_eq!(level(PhaseErrorUnit::Millisecond), Level::Constant(100.0));
     }

@@ -13,7 +13,7 @@ use gdcm_study::results::uncertainty::{PairScatter, Uncertainty};
 use gdcm_words::uncertainty::differences_summary;
 
 use super::axis::{Axis, Range};
-use super::condition_source::{settings_words, used_schedule_words};
+use super::caption_words::{settings_words, used_schedule_words};
 use super::drawing::{Color, Hue, Stroke};
 use super::figure::{Figure, Panel, Plot};
 use super::marks::{Bars, DotShape, Dots, Intervals, Note, Place};
@@ -25,16 +25,16 @@ const APART: f64 = 0.24;
 /// Confidence interval for the unexplained part.
 const INTERVAL: Stroke = Stroke::solid(Color::new(Hue::Nominal).tint(50), 2.4);
 /// Interval ends are shown up to this multiple of the largest scatter.
-const MOST_SEEN: f64 = 4.0;
+const MOST_SHOWN: f64 = 4.0;
 /// Range shown on the variance axis \[%\]: the shares end at 100, and the ratios are written above.
-const SHARES: Range = Range {
+const SHARE_RANGE: Range = Range {
     min: 0.0,
     max: 118.0,
 };
 /// Position \[%\] for the ratios above the shares.
-const ABOVE: f64 = 109.0;
+const RATIO_HEIGHT: f64 = 109.0;
 /// Position \[%\] for the note on a missing decomposition.
-const MIDDLE: f64 = 50.0;
+const MISSING_HEIGHT: f64 = 50.0;
 
 /// Names of the axis positions: scatter between conditions at equal airspeed, and scatter about the
 /// schedule.
@@ -128,7 +128,12 @@ fn shares_panel(scatter: &PairScatter) -> Panel {
     let mut missing = Vec::new();
     for PlacedSplit { x, split } in placed_splits(scatter) {
         let Some(split) = split else {
-            missing.push(note(x, MIDDLE, "no degrees of freedom".to_owned(), true));
+            missing.push(note(
+                x,
+                MISSING_HEIGHT,
+                "no degrees of freedom".to_owned(),
+                true,
+            ));
             continue;
         };
         if let Some(shares) = split.shares() {
@@ -141,10 +146,10 @@ fn shares_panel(scatter: &PairScatter) -> Panel {
             }
         }
         if let Some(ratio) = split.ratio() {
-            ratios.push(note(x, ABOVE, format!("{ratio:.1}×"), false));
+            ratios.push(note(x, RATIO_HEIGHT, format!("{ratio:.1}×"), false));
         }
     }
-    let y = Axis::linear("Variance [%]").showing(Some(SHARES));
+    let y = Axis::linear("Variance [%]").showing(Some(SHARE_RANGE));
     Panel::new(axis(), y)
         .with_all(stack)
         .with_all(ratios)
@@ -177,7 +182,7 @@ fn deviations_panel(scatter: &PairScatter, level: f64) -> Panel {
         if let Some([low, high]) = split.unexplained_interval(level) {
             ends.push([x + APART, 100.0 * low, 100.0 * high]);
         }
-        most = f64::max(most, MOST_SEEN * percent(split.scatter));
+        most = f64::max(most, MOST_SHOWN * percent(split.scatter));
     }
     let mut y = Axis::linear("Scatter [%]").including(0.0).at_least(1.0);
     for [_, _, high] in &ends {

@@ -12,7 +12,7 @@ use super::bode_options::BodeOptions;
 use super::condition_source::ConditionSource;
 use super::drawing::{Color, Hue};
 use super::figure::{Figure, Panel, Plot};
-use super::marks::{Band, Curve, Envelope, Mark, Rule};
+use super::marks::{Curve, Envelope, Mark, Rule, Strip};
 use super::reference_line::{Level, ReferenceKind, ReferenceLine};
 use super::responses::BodeBand;
 use super::role::Role;
@@ -30,9 +30,9 @@ const SHARED_ASPECT: f64 = 1.9;
 pub(super) struct FrequencyPanels<'a> {
     pub(super) curves: &'a [BodeCurve],
     pub(super) references: &'a [ReferenceLine],
-    pub(super) bands: &'a [BodeBand],
+    pub(super) uncertainty_bands: &'a [BodeBand],
     /// Frequency ranges in which a pilot would notice the remaining mismatch \[rad/s\].
-    pub(super) strips: &'a [(f64, f64)],
+    pub(super) noticed: &'a [(f64, f64)],
     pub(super) options: &'a BodeOptions,
 }
 
@@ -44,18 +44,18 @@ impl FrequencyPanels<'_> {
 
     /// Builds a panel; `convert` converts its values to the unit of the vertical axis.
     pub(super) fn converted_panel(&self, pane: Pane, axis: Axis, convert: fn(f64) -> f64) -> Panel {
-        let strips = self.strips.iter().map(|&(from, to)| Band {
+        let noticed = self.noticed.iter().map(|&(from, to)| Strip {
             range: self.options.in_unit(from, to),
             color: NOTICED,
             key: "noticeable error (outside MUAD)".to_owned(),
         });
-        let bands = self
-            .bands
+        let envelopes = self
+            .uncertainty_bands
             .iter()
             .map(|band| self.envelope(band, pane, convert));
         Panel::new(self.options.frequency_axis(), axis)
-            .with_all(strips)
-            .with_all(bands)
+            .with_all(noticed)
+            .with_all(envelopes)
             .with_all(self.visible_curves(pane, convert))
             .with_all(self.reference_marks(pane, convert))
     }
@@ -98,6 +98,7 @@ impl FrequencyPanels<'_> {
             .collect()
     }
 
+    /// Returns the shaded area between the two lines of an uncertainty band.
     fn envelope(&self, band: &BodeBand, pane: Pane, convert: fn(f64) -> f64) -> Envelope {
         let values = match pane {
             Pane::Magnitude => &band.magnitude_db,

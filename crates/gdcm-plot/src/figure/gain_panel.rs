@@ -199,23 +199,27 @@ impl GainPanel<'_> {
         uncertainty
             .greatest_differences(pair)
             .into_iter()
-            .filter(|found| found.is_significant(uncertainty.level) == is_significant)
-            .filter_map(|found| self.bracket(found, is_significant))
+            .filter(|difference| difference.is_significant(uncertainty.level) == is_significant)
+            .filter_map(|difference| self.bracket(difference, is_significant))
             .collect()
     }
 
     /// Returns a bracket at a difference, labelled with its ratio if significant; `None` if a
     /// condition has no result.
-    fn bracket(&self, found: &AirspeedDifference, is_significant: bool) -> Option<Bracket> {
-        let [first, second] = found.conditions;
+    fn bracket(
+        &self,
+        airspeed_difference: &AirspeedDifference,
+        is_significant: bool,
+    ) -> Option<Bracket> {
+        let [first, second] = airspeed_difference.conditions;
         let first = self.analysis.condition(first)?;
         let second = self.analysis.condition(second)?;
-        let label = match found.difference.ratio() {
+        let label = match airspeed_difference.difference.ratio() {
             Some(ratio) if is_significant => format!("{ratio:.1}×"),
             _ => String::new(),
         };
         Some(Bracket {
-            x: found.airspeed_kt,
+            x: airspeed_difference.airspeed_kt,
             ends: [
                 self.quantity.value_in(&first.correction),
                 self.quantity.value_in(&second.correction),
@@ -227,7 +231,10 @@ impl GainPanel<'_> {
     /// Returns the confidence band and the scatter band about samples `[airspeed, value]` from the
     /// schedule; empty if no bands match the schedule and the quantity. Delays never have bands.
     fn bands(&self, schedule: &Schedule, samples: &[[f64; 2]]) -> Vec<Envelope> {
-        let Some(bands) = self.uncertainty.and_then(|found| found.bands.as_ref()) else {
+        let Some(bands) = self
+            .uncertainty
+            .and_then(|uncertainty| uncertainty.bands.as_ref())
+        else {
             return Vec::new();
         };
         let scalar = self.quantity.scalar();

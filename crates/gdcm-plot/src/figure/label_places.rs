@@ -66,11 +66,16 @@ const DIRECTIONS: [Direction; 8] = [
 /// Tried distances from the dot's edge \[pt\]; at all but the first, a leader connects the dot to
 /// its label.
 const GAPS: [f64; 6] = [1.5, 8.0, 15.0, 22.0, 30.0, 40.0];
-/// Number of passes; each pass places every label again, given the other labels.
+/// Number of passes; each pass places every label again, given the other labels, since a label
+/// placed early does not know the later ones.
 const SWEEPS: usize = 3;
 /// With more labels than this, no label is placed, because they would be unreadable and slow to
 /// place.
 const MOST_LABELS: usize = 300;
+
+// Costs of a place. One square point over text or a dot (40) costs more than the last direction at
+// the largest distance (0.2 * 7 + 0.6 * 40 = 25.4), so that any free place is preferred to one
+// that covers text or dots; bars and the path cost less.
 
 /// Cost per square point that a label covers on another label.
 const ON_LABEL: f64 = 40.0;
@@ -91,9 +96,11 @@ const LATER_DIRECTION: f64 = 0.2;
 /// Cost per point of distance from the dot's edge.
 const FARTHER: f64 = 0.6;
 /// Maximum sum of the fractions of a label's area over other labels, over dots and outside the
-/// bounds. A label with a larger sum is removed as unreadable.
+/// bounds. A label with a larger sum is removed as unreadable; bars and the path do not count,
+/// because text across a line remains readable.
 const MOST_COVERED: f64 = 0.12;
-/// Side of the square that approximates a dot, relative to the dot's radius.
+/// Side of the square that approximates a dot, relative to the dot's radius: slightly more than the
+/// 1.77 at which it has the area of a circle.
 const DOT_SIDE: f64 = 1.9;
 /// Margin around other labels \[pt\].
 const LABEL_MARGIN: f64 = 1.0;
@@ -169,8 +176,9 @@ pub fn place_labels(dots: &[LabelledDot], around: &Surroundings) -> Vec<Option<L
             placing.places[index] = placing.best_place(index);
         }
     }
-    // The label that covers most is removed first: labels that it covered may then remain.
-    while let Some(worst) = placing.most_covering(&labelled) {
+    // The label with the largest covered part is removed first: labels that it overlaps may then
+    // remain.
+    while let Some(worst) = placing.most_covered(&labelled) {
         placing.places[worst] = None;
     }
     placing.places
@@ -282,7 +290,7 @@ impl Placing<'_> {
 
     /// Returns the index of the dot whose label has the largest covered part; `None` if no part
     /// exceeds [`MOST_COVERED`].
-    fn most_covering(&self, labelled: &[usize]) -> Option<usize> {
+    fn most_covered(&self, labelled: &[usize]) -> Option<usize> {
         let mut worst = None;
         let mut most = MOST_COVERED;
         for &index in labelled {

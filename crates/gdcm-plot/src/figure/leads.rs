@@ -12,7 +12,7 @@ use super::condition_source::ConditionSource;
 use super::drawing::{Color, Dash, Hue, Stroke};
 use super::figure::{Figure, Panel, Plot};
 use super::gains::all_channels;
-use super::marks::{Band, Curve, Rule};
+use super::marks::{Curve, Rule, Strip};
 use super::role::Role;
 
 /// Number of points in each curve.
@@ -174,13 +174,13 @@ fn dynamics(correction: &ChannelCorrection, channels: &[Channel]) -> GainDelay {
 /// Returns the panel with a shaded background above the validity limit, which has an entry in the
 /// legend, and a line at the limit.
 fn with_limit(panel: Panel, price: &LeadPrice) -> Panel {
-    let ground = Band {
+    let beyond = Strip {
         range: Range::new(price.limit_rad_s, price.above_rad_s()),
         color: BEYOND,
         key: limit_text(price),
     };
     panel
-        .with_ground(ground)
+        .with_ground(beyond)
         .with(Rule::vertical(price.limit_rad_s, LIMIT))
 }
 

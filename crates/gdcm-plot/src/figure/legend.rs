@@ -81,9 +81,9 @@ fn entry(mark: &Mark) -> Option<Entry> {
             text: brackets.name.clone(),
             sample: Sample::Line(brackets.stroke),
         }),
-        Mark::Band(band) => Some(Entry {
-            text: band.key.clone(),
-            sample: Sample::Ground(band.color),
+        Mark::Strip(strip) => Some(Entry {
+            text: strip.key.clone(),
+            sample: Sample::Ground(strip.color),
         }),
         Mark::Rule(_) | Mark::Guide(_) | Mark::Note(_) => None,
     }

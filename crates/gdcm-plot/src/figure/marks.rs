@@ -9,7 +9,7 @@
 //! | [`Spans`] | vertical ranges, shaded | no | yes | yes |
 //! | [`Intervals`] | vertical ranges, as lines | no | yes | yes |
 //! | [`Brackets`] | two values at the same x | no | yes | yes |
-//! | [`Band`] | shaded horizontal range | no | no | yes |
+//! | [`Strip`] | shaded range of x | no | no | yes |
 //! | [`Rule`] | straight line across the panel | no | horizontal with a label | no |
 //! | [`Guide`] | grid line with a label | no | no | no |
 //! | [`Note`] | text | no | no | no |
@@ -30,7 +30,7 @@ pub enum Mark {
     Curve(Curve),
     Dots(Dots),
     Bars(Bars),
-    Band(Band),
+    Strip(Strip),
     Rule(Rule),
     Spans(Spans),
     Envelope(Envelope),
@@ -123,9 +123,9 @@ pub struct Bars {
     pub beside: f64,
 }
 
-/// A shaded range along the horizontal axis, over the full panel height.
+/// A shaded range of x, over the full panel height.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Band {
+pub struct Strip {
     pub range: Range,
     pub color: Color,
     /// Entry in the legend.
@@ -244,7 +244,7 @@ macro_rules! into_mark {
 }
 
 into_mark!(
-    Curve, Dots, Bars, Band, Rule, Spans, Envelope, Intervals, Brackets, Guide, Note
+    Curve, Dots, Bars, Strip, Rule, Spans, Envelope, Intervals, Brackets, Guide, Note
 );
 
 impl Curve {

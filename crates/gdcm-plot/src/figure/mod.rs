@@ -12,8 +12,9 @@
 //! | [`role`], `color`, `stroke` | line styles and colours by meaning |
 //! | [`request`] | kinds of figures; the figure for a request |
 //! | [`drawing`], `area` | shapes and texts on paper |
-//! | [`bode`], [`airspeeds`], [`error`], [`gains`], [`schedule_cost`], [`assessment`], [`poles`], [`physics`], [`physics_change`], [`leads`], [`requirements`] | a figure for each view |
+//! | [`bode`], [`airspeeds`], [`error`], [`gains`], [`gains_on_screen`], [`schedule_cost`], [`assessment`], [`poles`], [`physics`], [`physics_change`], [`leads`], [`requirements`], [`bandwidth_detail`] | a figure for each view |
 //! | [`condition_source`], [`responses`] | curves for a condition, from models and corrections |
+//! | [`caption_words`] | words for captions |
 //! | `airspeed_response`, `uncertainty_band`, `reference_line`, `error_references` | curves over all conditions, bands and lines about them |
 //! | [`layout`], [`letters`], [`label_places`] | places for panels, letters and labels |
 //! | [`paint`], `paint_axes`, `paint_marks`, `paint_dots`, `dot_style`, `paint_words` | shapes at their places |
@@ -44,9 +45,11 @@ mod area;
 mod arrow;
 pub mod assessment;
 pub mod axis;
+pub mod bandwidth_detail;
 pub mod bode;
 mod bode_curve;
 mod bode_options;
+pub mod caption_words;
 mod change_table;
 mod coherence;
 mod color;
@@ -71,6 +74,7 @@ mod frequency_panels;
 mod gain_panel;
 mod gain_quantity;
 pub mod gains;
+pub mod gains_on_screen;
 pub mod label_places;
 pub mod layout;
 pub mod leads;

@@ -1,5 +1,5 @@
 //! Envelopes for maximum unnoticeable added dynamics (MUAD, MIL-STD-1797A), drawn about a response
-//! or in an error plot, and the frequencies at which a deviation leaves them.
+//! or in an error plot, and the frequencies at which an error leaves them.
 //!
 //! The envelopes are defined for the ratio of model to reference.
 
@@ -17,13 +17,13 @@ use super::role::Role;
 const LOWER: usize = 0;
 /// Index of the upper envelope in [`Muad`].
 const UPPER: usize = 1;
-/// Label for the envelope that limits the unnoticeable deviations from below.
+/// Label for an envelope above which errors are unnoticeable: the lower limit.
 const ABOVE: &str = "unnoticeable above (MUAD)";
-/// Label for the envelope that limits the unnoticeable deviations from above.
+/// Label for an envelope below which errors are unnoticeable: the upper limit.
 const BELOW: &str = "unnoticeable below (MUAD)";
 
 /// Returns the envelopes about the identified representative in `drawn`, whether its curve is
-/// hidden or not: a pilot does not notice a deviation from the identified response that stays
+/// hidden or not: a pilot does not notice a difference from the identified response that stays
 /// between them. Empty unless the options show MUAD.
 pub fn muad_about(drawn: &[BodeCurve], options: &BodeOptions) -> Vec<ReferenceLine> {
     let identified = drawn
@@ -50,12 +50,39 @@ pub fn muad_about(drawn: &[BodeCurve], options: &BodeOptions) -> Vec<ReferenceLi
     lines
 }
 
-/// Returns the envelopes for an error plot at the frequencies `omega` \[rad/s\]. Magnitude errors
-/// are drawn as reference over model, so that the magnitude envelopes are mirrored and exchange
-/// their labels; phase errors are drawn as model minus reference.
+/// An envelope in an error plot, with its label in either panel.
+struct ErrorEnvelope {
+    /// Index in [`Muad`].
+    end: usize,
+    magnitude_label: &'static str,
+    phase_label: &'static str,
+}
+
+/// Phase errors are drawn as model minus reference, as the envelopes are defined. Magnitude errors
+/// are drawn as reference over model: their envelopes are mirrored, so that the lower envelope
+/// limits them from above.
+const ERROR_ENVELOPES: [ErrorEnvelope; 2] = [
+    ErrorEnvelope {
+        end: LOWER,
+        magnitude_label: BELOW,
+        phase_label: ABOVE,
+    },
+    ErrorEnvelope {
+        end: UPPER,
+        magnitude_label: ABOVE,
+        phase_label: BELOW,
+    },
+];
+
+/// Returns the envelopes for an error plot at the frequencies `omega` \[rad/s\].
 pub(super) fn muad_among_errors(omega: &[f64], unit: PhaseErrorUnit) -> Vec<ReferenceLine> {
     let mut lines = Vec::new();
-    for (end, magnitude_label, phase_label) in [(LOWER, BELOW, ABOVE), (UPPER, ABOVE, BELOW)] {
+    for ErrorEnvelope {
+        end,
+        magnitude_label,
+        phase_label,
+    } in ERROR_ENVELOPES
+    {
         let mut magnitude = Vec::new();
         let mut phase = Vec::new();
         for &omega in omega {
@@ -79,8 +106,8 @@ fn envelope(pane: Pane, label: &str, points: Vec<[f64; 2]>) -> ReferenceLine {
     ReferenceLine::new(pane, ReferenceKind::Envelope, label, Level::Sampled(points))
 }
 
-/// Returns the frequency ranges \[rad/s\] in which the corrected curve in `drawn`, a deviation from
-/// the reference, leaves the envelopes. Empty unless the options show MUAD.
+/// Returns the frequency ranges \[rad/s\] in which the corrected curve in `drawn`, an error curve,
+/// leaves the envelopes. Empty unless the options show MUAD.
 pub fn noticed(drawn: &[BodeCurve], options: &BodeOptions) -> Vec<(f64, f64)> {
     let corrected = drawn.iter().find(|curve| curve.id == CurveId::Corrected);
     let Some(curve) = corrected else {
@@ -95,7 +122,7 @@ pub fn noticed(drawn: &[BodeCurve], options: &BodeOptions) -> Vec<(f64, f64)> {
     for (k, &at) in curve.omega.iter().enumerate() {
         let error_db = curve.magnitude_db[k];
         if !error_db.is_finite() {
-            // The deviation is NaN at frequencies that do not count.
+            // The error is NaN at frequencies that do not count.
             continue;
         }
         let phase = curve.phase_deg[k];
@@ -104,6 +131,7 @@ pub fn noticed(drawn: &[BodeCurve], options: &BodeOptions) -> Vec<(f64, f64)> {
             PhaseErrorUnit::Millisecond => 1e-3 * phase * at,
         };
         omega.push(at);
+        // Model over reference, as the envelopes are defined.
         mismatch_db.push(-error_db);
         principal_deg.push(wrap(radians).to_degrees());
     }

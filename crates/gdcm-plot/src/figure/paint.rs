@@ -195,7 +195,7 @@ pub struct PaintedPanel {
 
 /// Paints a panel with its frame, axes and title, from the lowest layer to the topmost:
 ///
-/// 1. clipped to the frame: backgrounds (shaded bands, spans and envelopes), grid, lines;
+/// 1. clipped to the frame: backgrounds (shaded strips, spans and envelopes), grid, lines;
 /// 2. frame, axes, title;
 /// 3. dots, labels and texts, which may cross the frame.
 fn paint_with_axes(placed: &Placed<'_>) -> PaintedPanel {
@@ -240,8 +240,8 @@ fn paint_over_lines(placed: &Placed<'_>, mut shapes: Vec<Shape>) -> PaintedPanel
 }
 
 impl Panel {
-    /// Paints the marks in `frame` \[pt\] with these x and y ranges; `font_size_pt` is the font size
-    /// \[pt\].
+    /// Paints the marks in `frame` \[pt\] with these x and y ranges; `font_size_pt` is the font
+    /// size \[pt\].
     ///
     /// For a canvas that draws frame, axes, grid and title itself (the window). The other
     /// difference from a panel on paper: an envelope with edges is a shaded area instead of two

@@ -11,6 +11,12 @@ const TICK_LINE: Stroke = Stroke::solid(Color::DIM, 0.6);
 const GRID: Stroke = Stroke::solid(Color::GRID, 0.4);
 /// Length of an unlabelled tick on a horizontal axis, relative to a labelled tick.
 const MINOR: f64 = 0.6;
+/// Space between a tick and its label on a vertical axis \[pt\].
+const TICK_LABEL_GAP: f64 = 1.5;
+/// Space between the tick labels and the label of a vertical axis \[pt\].
+const VERTICAL_LABEL_GAP: f64 = 2.5;
+/// Amount by which the label of a horizontal axis is moved towards the tick labels \[pt\].
+const HORIZONTAL_LABEL_RISE: f64 = 0.5;
 
 /// Paints the grid: a line at each tick, except on an axis with names.
 pub(super) fn grid(placed: &Placed<'_>) -> Vec<Shape> {
@@ -55,13 +61,13 @@ pub(super) fn horizontal_axis(side: &Side, axis: &Axis, frame: Area) -> Vec<Shap
     if side.has_label {
         // A label wider than the frame begins at the frame's left edge.
         let is_wide = LABEL_PT * width(&axis.label) > frame.width;
-        let (part, anchor) = if is_wide {
-            (0.0, Anchor::Start)
+        let anchor = if is_wide {
+            Anchor::Start
         } else {
-            (0.5, Anchor::Middle)
+            Anchor::Middle
         };
-        let [x, y] = frame.at(part, 0.0);
-        let place = [x, y + side.depth + LABEL_PT - 0.5];
+        let [x, y] = frame.at(anchor.before(), 0.0);
+        let place = [x, y + side.depth + LABEL_PT - HORIZONTAL_LABEL_RISE];
         let text = Text::new(place, &axis.label, LABEL_PT);
         shapes.push(Shape::Text(text.anchored(anchor)));
     }
@@ -80,14 +86,14 @@ pub(super) fn vertical_axis(side: &Side, axis: &Axis, frame: Area) -> Vec<Shape>
         if side.has_numbers
             && let Some(label) = &tick.label
         {
-            let place = [x - TICK - 1.5, y + HALF_LETTER_HEIGHT * SMALL_PT];
+            let place = [x - TICK - TICK_LABEL_GAP, y + HALF_LETTER_HEIGHT * SMALL_PT];
             let text = Text::new(place, label, SMALL_PT);
             shapes.push(Shape::Text(text.anchored(Anchor::End)));
         }
     }
     if side.has_label {
         let [x, y] = frame.at(0.0, 0.5);
-        let place = [x - side.depth - 2.5, y];
+        let place = [x - side.depth - VERTICAL_LABEL_GAP, y];
         let text = Text::new(place, &axis.label, LABEL_PT);
         shapes.push(Shape::Text(text.anchored(Anchor::Middle).upright(true)));
     }

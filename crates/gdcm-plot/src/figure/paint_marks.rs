@@ -24,10 +24,10 @@ const GUIDE: Stroke = Stroke::solid(Color::DIM.tint(40), 0.4);
 /// Line around a bar.
 const BAR_EDGE: Stroke = Stroke::solid(Color::DIM, 0.3);
 
-/// Paints the backgrounds, which lie below the grid: bands first, then spans and envelopes without
+/// Paints the backgrounds, which lie below the grid: strips first, then spans and envelopes without
 /// edges, both in mark order.
 pub(super) fn backgrounds(placed: &Placed<'_>) -> Vec<Shape> {
-    let mut shapes = bands(placed);
+    let mut shapes = strips(placed);
     for mark in &placed.panel.marks {
         match mark {
             Mark::Spans(spans) => shapes.extend(span_areas(placed, spans)),
@@ -40,16 +40,16 @@ pub(super) fn backgrounds(placed: &Placed<'_>) -> Vec<Shape> {
     shapes
 }
 
-fn bands(placed: &Placed<'_>) -> Vec<Shape> {
+fn strips(placed: &Placed<'_>) -> Vec<Shape> {
     let mut shapes = Vec::new();
     for mark in &placed.panel.marks {
-        // A band spans the frame's full height between two vertical lines, at its ends; `across`
+        // A strip spans the frame's full height between two vertical lines, at its ends; `across`
         // returns each line's lower end first.
-        if let Mark::Band(band) = mark
-            && let Some([lower_left, _]) = placed.across(Along::X, band.range.min)
-            && let Some([_, upper_right]) = placed.across(Along::X, band.range.max)
+        if let Mark::Strip(strip) = mark
+            && let Some([lower_left, _]) = placed.across(Along::X, strip.range.min)
+            && let Some([_, upper_right]) = placed.across(Along::X, strip.range.max)
         {
-            shapes.push(rectangle(lower_left, upper_right, band.color, None));
+            shapes.push(rectangle(lower_left, upper_right, strip.color, None));
         }
     }
     shapes
@@ -128,8 +128,8 @@ pub(super) fn mark_lines(placed: &Placed<'_>, mark: &Mark) -> Vec<Shape> {
             .iter()
             .flat_map(|edge| curve_lines(placed, edge))
             .collect(),
-        // Bands and spans are backgrounds; dots and notes are painted over the lines.
-        Mark::Dots(_) | Mark::Band(_) | Mark::Spans(_) | Mark::Note(_) => Vec::new(),
+        // Strips and spans are backgrounds; dots and notes are painted over the lines.
+        Mark::Dots(_) | Mark::Strip(_) | Mark::Spans(_) | Mark::Note(_) => Vec::new(),
     }
 }
 

@@ -6,6 +6,23 @@ use super::letters::{HALF_LETTER_HEIGHT, width};
 use super::marks::{Along, Guide, Mark, Note, Place, Rule};
 use super::placed::Placed;
 
+/// Space between a rule and its label, and between a note and the left or right edge of the
+/// frame \[pt\].
+const GAP: f64 = 2.0;
+/// Margin of a rule label's background to the left and to the right of the text \[pt\].
+const GROUND_MARGIN: f64 = 1.0;
+/// Distance from the base line of a rule's label up to the upper edge of its background, relative
+/// to the font size.
+const GROUND_ASCENT: f64 = 0.75;
+/// Height of the background of a rule's label, relative to the font size.
+const GROUND_HEIGHT: f64 = 0.8;
+/// Space between a guide's last visible point and its label \[pt\].
+const GUIDE_GAP: f64 = 1.5;
+/// Space between a note at the lower left and the lower edge of the frame \[pt\].
+const LOWER_GAP: f64 = 2.5;
+/// Amount by which a note at the upper right is moved towards the upper edge of the frame \[pt\].
+const UPPER_RISE: f64 = 1.0;
+
 /// Paints a rule's label at its upper or right end, on a white background that hides curves behind
 /// it; returns nothing without a label or if the rule lies outside the frame.
 pub(super) fn rule_label(placed: &Placed<'_>, rule: &Rule) -> Vec<Shape> {
@@ -19,15 +36,15 @@ pub(super) fn rule_label(placed: &Placed<'_>, rule: &Rule) -> Vec<Shape> {
         return Vec::new();
     }
     let [x, y] = match rule.along {
-        Along::X => [end[0] - 2.0, end[1] + SMALL_LINE],
-        Along::Y => [end[0] - 2.0, end[1] - 2.0],
+        Along::X => [end[0] - GAP, end[1] + SMALL_LINE],
+        Along::Y => [end[0] - GAP, end[1] - GAP],
     };
     let length = SMALL_PT * width(&rule.label);
     let ground = Area::new(
-        x - length - 1.0,
-        y - 0.75 * SMALL_PT,
-        length + 2.0,
-        0.8 * SMALL_PT,
+        x - length - GROUND_MARGIN,
+        y - GROUND_ASCENT * SMALL_PT,
+        length + 2.0 * GROUND_MARGIN,
+        GROUND_HEIGHT * SMALL_PT,
     );
     let text = Text::new([x, y], &rule.label, SMALL_PT)
         .anchored(Anchor::End)
@@ -62,7 +79,11 @@ fn guide_label(placed: &Placed<'_>, guide: &Guide) -> Option<Text> {
         .filter_map(|point| placed.at(*point))
         .find(|position| placed.shows(*position))?;
     let size_pt = placed.font_size_pt;
-    Some(Text::new([x + 1.5, y + size_pt], &guide.label, size_pt))
+    Some(Text::new(
+        [x + GUIDE_GAP, y + size_pt],
+        &guide.label,
+        size_pt,
+    ))
 }
 
 /// Returns a note's text; `None` at a value that an axis cannot show, or for a horizontal text that
@@ -88,12 +109,12 @@ fn note_text(placed: &Placed<'_>, note: &Note) -> Option<Text> {
         }
         Place::UpperRight => {
             let [x, y] = placed.frame.at(1.0, 1.0);
-            let place = [x - 2.0, y + SMALL_LINE - 1.0];
+            let place = [x - GAP, y + SMALL_LINE - UPPER_RISE];
             Some(Text::new(place, &note.text, size_pt).anchored(Anchor::End))
         }
         Place::LowerLeft => {
             let [x, y] = placed.frame.at(0.0, 0.0);
-            Some(Text::new([x + 2.0, y - 2.5], &note.text, size_pt))
+            Some(Text::new([x + GAP, y - LOWER_GAP], &note.text, size_pt))
         }
     }
 }

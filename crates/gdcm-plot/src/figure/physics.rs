@@ -17,7 +17,7 @@ use super::axis::{Axis, Range};
 use super::condition_classes::Classes;
 use super::drawing::{Color, Dash, Hue, Stroke};
 use super::figure::{Figure, Panel, Plot};
-use super::marks::{Band, Curve, Dot, DotShape, Dots, Envelope, Intervals, MarkId, Rule};
+use super::marks::{Curve, Dot, DotShape, Dots, Envelope, Intervals, MarkId, Rule, Strip};
 
 /// Line at the value found for all conditions together.
 const JOINT: Stroke = Stroke::solid(Color::new(Hue::Perturbed), 1.4);
@@ -31,7 +31,7 @@ const NOMINAL: Stroke = Stroke::dashed(Color::DIM, 0.8, Dash::Short);
 const BAR: Stroke = Stroke::solid(Color::new(Hue::Perturbed), 0.7);
 /// Line through the misfits in the conditions left out.
 const LEFT_OUT: Stroke = Stroke::solid(Color::INK, 1.4);
-/// Background at steps that hardly lower the misfit in conditions left out.
+/// Background at steps that hardly lower the misfit in the conditions left out.
 const NO_IMPROVEMENT: Color = Color::DIM.tint(10);
 /// Margin beyond the slowest and the fastest condition \[kt\].
 const AIRSPEED_MARGIN_KT: f64 = 4.0;
@@ -129,8 +129,9 @@ impl ShownParameter<'_> {
     }
 
     /// Returns the parameter's change as fitted to each single condition, with the half-width of
-    /// its interval (Student's t, with one degree of freedom less than conditions); both in the
-    /// parameter's unit. Conditions without such a fit are skipped.
+    /// its interval (Student's t, with one degree of freedom less than conditions, as for the value
+    /// found for all conditions together); both in the parameter's unit. Conditions without such a
+    /// fit are skipped.
     fn values(&self) -> Vec<PlacedValue<'_>> {
         let mut values = Vec::new();
         let degrees = self.conditions.len().saturating_sub(1).max(1) as f64;
@@ -184,10 +185,10 @@ impl ShownParameter<'_> {
                 label: String::new(),
                 id: Some(MarkId::Condition(state.id)),
             };
-            let found = groups
+            let own_group = groups
                 .iter_mut()
                 .find(|group| group.shape == shape && group.filled == filled);
-            match found {
+            match own_group {
                 Some(group) => group.dots.push(dot),
                 None => {
                     let color = Color::new(Hue::Perturbed);
@@ -232,9 +233,9 @@ fn misfit_plot(scores: &Scores, parameters: &[OfferedParameter]) -> Plot {
         Axis::named("Parameters added, one after the other", names),
         y,
     );
-    if let Some(first) = first_idle_step(scores) {
+    if let Some(first) = first_step_without_improvement(scores) {
         let end = points.len() as f64 - 0.5;
-        panel = panel.with_ground(Band {
+        panel = panel.with_ground(Strip {
             range: Range::new(first as f64 - 0.5, end),
             color: NO_IMPROVEMENT,
             key: "no improvement".to_owned(),
@@ -248,21 +249,21 @@ fn misfit_plot(scores: &Scores, parameters: &[OfferedParameter]) -> Plot {
     Plot::new("Remaining misfit").panel(panel.with(curve).with(dots))
 }
 
-/// Returns the first of the idle steps at the end, each of which lowers the misfit by less than
-/// [`LEAST_GAIN`], the least benefit for which a parameter is named; `None` if the last step is not
-/// idle. Step 0, without parameters, is never idle.
-fn first_idle_step(scores: &Scores) -> Option<usize> {
+/// Returns the first of the last steps that bring no improvement: each lowers the misfit by less
+/// than [`LEAST_GAIN`], the least benefit for which the diagnosis names a parameter. `None` if the
+/// last step is an improvement. Step 0, without parameters, is never returned.
+fn first_step_without_improvement(scores: &Scores) -> Option<usize> {
     let steps = &scores.stepwise;
-    let mut first_idle = steps.len();
-    while first_idle > 1 {
-        let step = first_idle - 1;
+    let mut first = steps.len();
+    while first > 1 {
+        let step = first - 1;
         if steps[step - 1].score.ratio - steps[step].score.ratio >= LEAST_GAIN {
             break;
         }
-        first_idle = step;
+        first = step;
     }
-    if first_idle < steps.len() {
-        Some(first_idle)
+    if first < steps.len() {
+        Some(first)
     } else {
         None
     }

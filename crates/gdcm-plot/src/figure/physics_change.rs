@@ -22,7 +22,8 @@ const IDENTIFIED: Stroke = Stroke::solid(Color::new(Hue::Identified), 2.4);
 const BEFORE: Stroke = Stroke::dashed(Color::new(Hue::Perturbed), 1.2, Dash::Short);
 /// Physics representative with changed parameters.
 const AFTER: Stroke = Stroke::solid(Color::new(Hue::Perturbed), 1.6);
-/// Magnitude up to which poles are displayed, relative to the band's upper end.
+/// Magnitude up to which poles are displayed, relative to the band's upper end: poles far above the
+/// band would squeeze those within it.
 const SHOWN_POLES: f64 = 1.5;
 /// Minimum range of the magnitude axis \[dB\].
 const LEAST_DB: f64 = 4.0;
@@ -64,8 +65,8 @@ pub fn physics_change_figure(
     for response in effect.responses.iter().take(most) {
         figure = figure.plot(plots.plot(response));
     }
-    let near = SHOWN_POLES * assessment.band.max();
-    Some(figure.plot(pole_plot(effect, near)))
+    let most_rad_s = SHOWN_POLES * assessment.band.max();
+    Some(figure.plot(pole_plot(effect, most_rad_s)))
 }
 
 /// Axis and names common to the response plots.
@@ -130,11 +131,11 @@ impl Traces<'_> {
 }
 
 /// Plots the physics representative's poles with unchanged and with changed parameters, up to the
-/// magnitude `near` \[rad/s\].
-fn pole_plot(effect: &ConditionPhysics, near: f64) -> Plot {
+/// magnitude `most_rad_s`.
+fn pole_plot(effect: &ConditionPhysics, most_rad_s: f64) -> Plot {
     let mut shown: Vec<PoleShift> = Vec::new();
     for shift in effect.poles.iter().flatten() {
-        if shift.after.norm() <= near {
+        if shift.after.norm() <= most_rad_s {
             shown.push(*shift);
         }
     }

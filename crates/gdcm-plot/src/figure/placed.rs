@@ -6,7 +6,7 @@ use super::figure::Panel;
 use super::marks::{Along, Bracket};
 
 /// Distance between a bracket and its values \[pt\].
-const BRACKET: f64 = 5.0;
+const BRACKET_DISTANCE: f64 = 5.0;
 /// Minimum distance between a bracket and the left edge of the frame \[pt\].
 const LEAST_ROOM: f64 = 1.0;
 /// Tolerance by which a position in the frame may lie beyond its edge \[pt\].
@@ -96,15 +96,16 @@ impl Placed<'_> {
         let [from, to] = bracket.ends;
         let from = self.at([bracket.x, from])?;
         let to = self.at([bracket.x, to])?;
-        let side = if from[0] - BRACKET < self.frame.left + LEAST_ROOM {
+        // Direction from the values to the line: 1 to the right.
+        let side = if from[0] - BRACKET_DISTANCE < self.frame.left + LEAST_ROOM {
             1.0
         } else {
             -1.0
         };
         let ends = [from, to];
         Some(PlacedBracket {
-            spine: ends.map(|[x, y]| [x + side * BRACKET, y]),
-            hooks: ends.map(|[x, y]| [x + side * (BRACKET - HOOK), y]),
+            spine: ends.map(|[x, y]| [x + side * BRACKET_DISTANCE, y]),
+            hooks: ends.map(|[x, y]| [x + side * (BRACKET_DISTANCE - HOOK), y]),
         })
     }
 

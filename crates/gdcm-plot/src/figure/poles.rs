@@ -135,8 +135,8 @@ fn pole_dots(model: &SourceModel, modes: &ConditionModes) -> Dots {
     };
     let color = model.role.stroke(model.rejected).color;
     let mut dots = Dots::new(&model.id.name, shape, color).key(model.role.key(model.rejected));
-    let found = modes.bundle(model.id.bundle)[model.index].as_deref();
-    for mode in found.unwrap_or_default() {
+    let model_modes = modes.bundle(model.id.bundle)[model.index].as_deref();
+    for mode in model_modes.unwrap_or_default() {
         dots.dots.push(model_dot(model, mode.pole));
     }
     dots

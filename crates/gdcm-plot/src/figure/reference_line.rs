@@ -1,4 +1,4 @@
-//! Reference lines in plots of responses and deviations: targets, bounds, quantiles and envelopes.
+//! Reference lines in plots of responses and errors: G and D, bounds, quantiles and envelopes.
 
 use super::bode_curve::Pane;
 use super::drawing::{Color, Dash, Hue, Stroke};
@@ -12,7 +12,7 @@ pub enum Level {
     /// The same value at every frequency.
     Constant(f64),
     /// Slope times omega \[rad/s\]; for example, a delay's phase.
-    PerOmega(f64),
+    ProportionalToOmega(f64),
     /// `[omega, value]` with omega \[rad/s\] ascending.
     Sampled(Vec<[f64; 2]>),
 }
@@ -23,7 +23,7 @@ impl Level {
     pub fn at(&self, omega: f64) -> f64 {
         match self {
             Self::Constant(value) => *value,
-            Self::PerOmega(slope) => slope * omega,
+            Self::ProportionalToOmega(slope) => slope * omega,
             Self::Sampled(points) => match points.iter().find(|[at, _]| *at == omega) {
                 Some([_, value]) => *value,
                 None => f64::NAN,
@@ -36,7 +36,7 @@ impl Level {
     pub fn points(&self, from: f64, to: f64) -> Vec<[f64; 2]> {
         match self {
             Self::Constant(value) => vec![[from, *value], [to, *value]],
-            Self::PerOmega(slope) => (0..=POINTS)
+            Self::ProportionalToOmega(slope) => (0..=POINTS)
                 .map(|point| from + (to - from) * point as f64 / POINTS as f64)
                 .map(|log_omega| [log_omega, slope * 10f64.powf(log_omega)])
                 .collect(),
@@ -51,11 +51,12 @@ impl Level {
 /// Meaning of a reference line; labels are placed in this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ReferenceKind {
-    /// Delta gain G or delta delay D, the targets of the fit.
+    /// Delta gain G or delta delay D: the gain or the delay that the physics model lacks, to which
+    /// the correction is fitted (M6).
     Delta,
     /// Lower or upper channel bound.
     Bound,
-    /// Quantile of the deviation over the band.
+    /// Quantile of the error over the band.
     Quantile,
     /// Envelope for maximum unnoticeable added dynamics.
     Envelope,
@@ -123,7 +124,7 @@ mod tests {
             Level::Constant(3.0).points(0.0, 1.0),
             [[0.0, 3.0], [1.0, 3.0]]
         );
-        let points = Level::PerOmega(-2.0).points(0.0, 1.0);
+        let points = Level::ProportionalToOmega(-2.0).points(0.0, 1.0);
         assert_eq!(
             (points.first(), points.last()),
             (Some(&[0.0, -2.0]), Some(&[1.0, -20.0]))

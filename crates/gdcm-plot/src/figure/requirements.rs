@@ -7,7 +7,7 @@
 
 use gdcm_method::requirements::LevelBoundaries;
 use gdcm_method::requirements::level_boundary::LevelBoundary;
-use gdcm_model::dataset::{ConditionId, Dataset, Pair};
+use gdcm_model::dataset::{Dataset, Pair};
 use gdcm_model::units::s_to_ms;
 use gdcm_study::results::required_bandwidth::BandwidthFinding;
 use gdcm_study::results::requirement_role::RequirementRole;
@@ -22,31 +22,23 @@ use super::figure::{Figure, Panel, Plot};
 use super::marks::{Curve, Dot, DotShape, Dots, Envelope, Intervals, Mark, MarkId};
 
 /// Arrow from a condition's physics model to its corrected model.
-const ARROW: Stroke = Stroke::solid(Color::DIM.tint(70), 0.7);
+pub(super) const ARROW: Stroke = Stroke::solid(Color::DIM.tint(70), 0.7);
 /// Interval of a bandwidth or a phase delay.
 const INTERVAL: Stroke = Stroke::solid(Color::DIM, 0.7);
 /// Boundary between levels.
 const LEVEL: Stroke = Stroke::dashed(Color::new(Hue::Warning), 1.0, Dash::Short);
 /// Upper end of shaded areas \[ms\], above every drawn phase delay.
-const BEYOND_MS: f64 = 1e4;
+pub(super) const BEYOND_MS: f64 = 1e4;
 /// Strength \[%\] in the widest shaded area; each narrower area is stronger by as much.
 const BEYOND_TINT: usize = 12;
 /// Maximum strength \[%\] in a shaded area.
 const MOST_BEYOND_TINT: usize = 48;
 /// Strength \[%\] for a dot whose bandwidth or phase delay depends on the model above the band.
 const DEPENDENT_TINT: u8 = 45;
-/// Strength \[%\] for dots in conditions that are not selected.
-const OTHER_TINT: u8 = 60;
-/// Strength \[%\] in a shaded tolerance.
-const TOLERANCE_TINT: u8 = 9;
-/// Size of dots in the selected condition, relative to the usual dot.
-const SELECTED_SIZE: f64 = 1.2;
-/// Size of dots in the other conditions, relative to the usual dot.
-const OTHER_SIZE: f64 = 0.8;
 
-/// Key for the bandwidth in a finding.
+/// Name of the bandwidth in a finding's intervals.
 const BANDWIDTH: &str = "omega_bw_rad_s";
-/// Key for the phase delay in a finding.
+/// Name of the phase delay in a finding's intervals.
 const PHASE_DELAY: &str = "phase_delay_s";
 
 /// Returns a response's position in the plot: bandwidth \[rad/s\] and phase delay \[ms\]; `None`
@@ -78,13 +70,13 @@ pub fn requirements_figure(
 ) -> Figure {
     let mut plots = Vec::new();
     for pair in bandwidth_pairs(requirements) {
-        let axis = &dataset.outputs()[pair.output].name;
+        let output = &dataset.outputs()[pair.output].name;
         let findings = PairFindings { requirements, pair };
         let x = Axis::linear("bandwidth [rad/s]");
         let y = Axis::linear("phase delay [ms]").including(0.0);
         let panel = Panel::new(x, y)
-            .with_all(areas_beyond(levels, axis))
-            .with_all(boundaries(levels, axis))
+            .with_all(areas_beyond(levels, output))
+            .with_all(boundaries(levels, output))
             .with_all(findings.marks());
         let title = format!("{}: attitude", dataset.pair_name(pair));
         plots.push(Plot::new(title).panel(panel));
@@ -102,153 +94,12 @@ pub fn requirements_figure(
         .plots(plots)
 }
 
-/// A response in the plot for a single requirement.
-#[derive(Clone, Copy)]
-pub struct BandwidthDetail<'a> {
-    pub requirements: &'a Requirements,
-    pub levels: &'a LevelBoundaries,
-    pub pair: Pair,
-    /// Selected condition: its dots are larger and in full colour, and its tolerances are shaded.
-    pub condition: ConditionId,
-    /// Role of the corrected model: with its condition's own correction, or with the scheduled one.
-    pub role: RequirementRole,
-    /// Maximum relative difference between a bandwidth and the identified model's.
-    pub bandwidth: f64,
-    /// Maximum difference between a phase delay and the identified model's \[s\].
-    pub phase_delay_s: f64,
-}
-
-/// Plots a response's phase delay over bandwidth in all conditions, for the physics, corrected and
-/// identified model in each; the tolerances about one condition's identified model are shaded.
-pub fn bandwidth_detail_figure(detail: &BandwidthDetail<'_>, dataset: &Dataset) -> Figure {
-    let axis = &dataset.outputs()[detail.pair.output].name;
-    let x = Axis::linear("bandwidth [rad/s]");
-    let y = Axis::linear("phase delay [ms]").including(0.0);
-    let panel = Panel::new(x, y)
-        .with_all(detail.tolerances())
-        .with_all(areas_beyond(detail.levels, axis))
-        .with_all(boundaries(detail.levels, axis))
-        .with_all(detail.marks());
-    let plot = Plot::new("").panel(panel);
-    let title = format!("{}: attitude", dataset.pair_name(detail.pair));
-    Figure::new(title).aspect(0.66).plots([plot])
-}
-
-impl BandwidthDetail<'_> {
-    /// Shades the bandwidths within the tolerance, and more strongly the part in which the phase
-    /// delay is within its tolerance too.
-    fn tolerances(&self) -> Vec<Envelope> {
-        let identified =
-            self.requirements
-                .bandwidth_of(self.condition, self.pair, RequirementRole::Identified);
-        let Some([omega, delay_ms]) = identified.and_then(bandwidth_place) else {
-            return Vec::new();
-        };
-        let tolerance_ms = s_to_ms(self.phase_delay_s);
-        let from = omega * (1.0 - self.bandwidth);
-        let to = omega * (1.0 + self.bandwidth);
-        vec![
-            tolerance_area(
-                "tolerance of the bandwidth",
-                [from, to],
-                [-BEYOND_MS, BEYOND_MS],
-            ),
-            tolerance_area(
-                "tolerance of the phase delay",
-                [from, to],
-                [delay_ms - tolerance_ms, delay_ms + tolerance_ms],
-            ),
-        ]
-    }
-
-    /// Draws arrows, then dots in the other conditions, and dots in the selected condition on top.
-    fn marks(&self) -> Vec<Mark> {
-        let mut marks: Vec<Mark> = Vec::new();
-        marks.extend(self.arrows().into_iter().map(Mark::from));
-        let findings = PairFindings {
-            requirements: self.requirements,
-            pair: self.pair,
-        };
-        let roles = [
-            RequirementRole::Identified,
-            RequirementRole::Physics,
-            self.role,
-        ];
-        for is_selected in [false, true] {
-            for role in roles {
-                let (shape, color) = dot_style(role);
-                let mut dots = if is_selected {
-                    Dots::new(role.name(), shape, color).key(role.name())
-                } else {
-                    Dots::new(role.name(), shape, color.tint(OTHER_TINT))
-                };
-                dots.size = if is_selected {
-                    SELECTED_SIZE
-                } else {
-                    OTHER_SIZE
-                };
-                for finding in findings.with_role(role) {
-                    if (finding.condition == self.condition) == is_selected
-                        && let Some([x, y]) = bandwidth_place(finding)
-                    {
-                        dots.dots.push(Dot {
-                            x,
-                            y,
-                            label: String::new(),
-                            id: Some(MarkId::Condition(finding.condition)),
-                        });
-                    }
-                }
-                if !dots.dots.is_empty() {
-                    marks.push(dots.into());
-                }
-            }
-        }
-        marks
-    }
-
-    /// Draws a line from the physics model to the corrected model in each condition.
-    fn arrows(&self) -> Vec<Curve> {
-        let mut lines = Vec::new();
-        for physics in &self.requirements.bandwidth {
-            if physics.pair != self.pair || physics.role != RequirementRole::Physics {
-                continue;
-            }
-            let corrected = self
-                .requirements
-                .bandwidth_of(physics.condition, self.pair, self.role);
-            if let Some(from) = bandwidth_place(physics)
-                && let Some(to) = corrected.and_then(bandwidth_place)
-            {
-                let stroke = if physics.condition == self.condition {
-                    Stroke::solid(Color::new(Hue::Text), 1.2)
-                } else {
-                    ARROW
-                };
-                lines.push(Curve::through("corrected", stroke, [from, to]));
-            }
-        }
-        lines
-    }
-}
-
-/// Shades a rectangle of bandwidths \[rad/s\] and phase delays \[ms\].
-fn tolerance_area(name: &str, omega: [f64; 2], delay_ms: [f64; 2]) -> Envelope {
-    let [low, high] = delay_ms;
-    Envelope {
-        name: name.to_owned(),
-        color: Color::new(Hue::Text).tint(TOLERANCE_TINT),
-        edge: None,
-        points: omega.map(|omega| [omega, low, high]).to_vec(),
-    }
-}
-
-/// Shades the areas beyond the boundaries (lower bandwidth, higher phase delay), wide areas first
-/// and narrow areas darker; an area is wider if its boundary starts at a higher bandwidth. A
-/// boundary whose bandwidths do not ascend is not shaded.
-fn areas_beyond(levels: &LevelBoundaries, axis: &str) -> Vec<Envelope> {
+/// Shades the areas beyond an output's level boundaries (lower bandwidth, higher phase delay), wide
+/// areas first and narrow areas darker; an area is wider if its boundary starts at a higher
+/// bandwidth. A boundary whose bandwidths do not ascend is not shaded.
+pub(super) fn areas_beyond(levels: &LevelBoundaries, output: &str) -> Vec<Envelope> {
     let mut rising: Vec<&LevelBoundary> = levels
-        .for_output(axis)
+        .for_output(output)
         .filter(|boundary| boundary.points.is_sorted_by(|a, b| a[0] <= b[0]))
         .collect();
     rising.sort_by(|a, b| b.points[0][0].total_cmp(&a.points[0][0]));
@@ -275,10 +126,10 @@ fn area_beyond(boundary: &LevelBoundary, tint: u8) -> Envelope {
     }
 }
 
-/// Draws the boundaries for an attitude axis as lines.
-fn boundaries(levels: &LevelBoundaries, axis: &str) -> Vec<Curve> {
+/// Draws the level boundaries for an output as lines.
+pub(super) fn boundaries(levels: &LevelBoundaries, output: &str) -> Vec<Curve> {
     let mut lines = Vec::new();
-    for boundary in levels.for_output(axis) {
+    for boundary in levels.for_output(output) {
         let points = boundary
             .points
             .iter()
@@ -289,9 +140,9 @@ fn boundaries(levels: &LevelBoundaries, axis: &str) -> Vec<Curve> {
 }
 
 /// A response's bandwidths and phase delays in all conditions.
-struct PairFindings<'a> {
-    requirements: &'a Requirements,
-    pair: Pair,
+pub(super) struct PairFindings<'a> {
+    pub(super) requirements: &'a Requirements,
+    pub(super) pair: Pair,
 }
 
 impl<'a> PairFindings<'a> {
@@ -303,7 +154,10 @@ impl<'a> PairFindings<'a> {
             .filter(move |finding| finding.pair == pair)
     }
 
-    fn with_role(&self, role: RequirementRole) -> impl Iterator<Item = &'a BandwidthFinding> {
+    pub(super) fn with_role(
+        &self,
+        role: RequirementRole,
+    ) -> impl Iterator<Item = &'a BandwidthFinding> {
         self.iter().filter(move |finding| finding.role == role)
     }
 
@@ -411,7 +265,7 @@ impl<'a> PairFindings<'a> {
     }
 }
 
-fn dot_style(role: RequirementRole) -> (DotShape, Color) {
+pub(super) fn dot_style(role: RequirementRole) -> (DotShape, Color) {
     match role {
         RequirementRole::Physics => (DotShape::Circle, Color::new(Hue::Perturbed)),
         RequirementRole::Corrected => (DotShape::Square, Color::new(Hue::Corrected)),

@@ -6,7 +6,7 @@
 
 use std::sync::Arc;
 
-use gdcm_model::dataset::{Band as BandOfComparison, BundleKind, ConditionId, Pair};
+use gdcm_model::dataset::{Band, BundleKind, ConditionId, Pair};
 use gdcm_model::response::FrequencyResponse;
 use gdcm_model::response::response_shape::{ResponseShape, wrapped_deg};
 use gdcm_model::units::signed;
@@ -39,7 +39,7 @@ impl ConditionSource<'_> {
         let source = ResponseSource {
             curves: Arc::clone(self.curves),
             pair,
-            reference: self.reference(),
+            reference: self.reference_index(),
         };
         cache.refresh(source, self.study.settings.band);
         let presentation = Presentation {
@@ -165,7 +165,7 @@ impl ResponseCache {
     /// Computes a response's shapes, unless they are known. Phases are aligned with the reference
     /// up to the limit of the displayed band. The identified models' curves end at this limit,
     /// because they carry no information beyond it.
-    fn refresh(&mut self, source: ResponseSource, band: BandOfComparison) {
+    fn refresh(&mut self, source: ResponseSource, band: Band) {
         if let Some(known) = &self.source
             && known.is_same(&source)
         {

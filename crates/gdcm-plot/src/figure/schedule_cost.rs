@@ -12,7 +12,7 @@ use gdcm_study::results::response_costs::ResponseCosts;
 use gdcm_study::results::uncertainty::Uncertainty;
 
 use super::axis::Axis;
-use super::condition_source::{settings_words, used_schedule_words};
+use super::caption_words::{settings_words, used_schedule_words};
 use super::drawing::{Color, Hue, Stroke};
 use super::figure::{Figure, Panel, Plot};
 use super::gain_panel::GainPanel;

@@ -143,7 +143,7 @@ impl Series {
             Mark::Envelope(envelope) => Self::from_ends(&envelope.name, &envelope.points),
             Mark::Intervals(intervals) => Self::from_ends(&intervals.name, &intervals.ends),
             Mark::Brackets(group) => vec![Self::from_brackets(group)],
-            Mark::Rule(_) | Mark::Band(_) | Mark::Guide(_) | Mark::Note(_) => Vec::new(),
+            Mark::Rule(_) | Mark::Strip(_) | Mark::Guide(_) | Mark::Note(_) => Vec::new(),
         }
     }
 

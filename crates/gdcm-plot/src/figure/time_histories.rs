@@ -1,8 +1,9 @@
 //! Models over time: their responses to a test input, and to a flight record with its tolerance
 //! corridors (M17.2).
 //!
-//! A *corridor* is the flight data plus and minus a tolerance. A *window* is a part of the record
-//! that is simulated from an initial state of its own.
+//! An *error* is the simulated value minus the flight data, a *corridor* the flight data plus and
+//! minus a tolerance. A *window* is a part of the record that is simulated from an initial state of
+//! its own. The *answer* of a model is its response to the test input.
 
 use gdcm_method::requirements::tolerance_check::ToleranceCheck;
 use gdcm_method::requirements::{RecordCheck, TestInputShape};
@@ -22,11 +23,11 @@ use super::role::Role;
 
 const INPUT: Stroke = Stroke::solid(Color::new(Hue::Text), 1.2);
 /// Line style for the flight data.
-const FLOWN: Stroke = Stroke::solid(Color::new(Hue::Text), 1.3);
+const FLIGHT: Stroke = Stroke::solid(Color::new(Hue::Text), 1.3);
 /// Fill colour of the corridor around the flight data: the tolerance on either side.
 const CORRIDOR: Color = Color::new(Hue::Text).tint(10);
-/// Height of the panel with the difference from flight; the panel with the record has height 1.
-const DIFFERENCE_WEIGHT: f64 = 0.55;
+/// Height of the panel with the error; the panel with the record has height 1.
+const ERROR_WEIGHT: f64 = 0.55;
 /// Height of the panel with the input, above a single quantity's record with height 1.
 const INPUT_WEIGHT: f64 = 0.36;
 /// Line width for a model's curve \[pt\]: thin, so that all models and the flight data can be told
@@ -61,10 +62,10 @@ pub fn test_answers_figure(answers: &TestAnswers, dataset: &Dataset) -> Figure {
     let time_s = answers.time_s();
     let input = &dataset.inputs()[answers.input];
     let stick = Curve::new(&input.name, INPUT, time_s.clone(), answers.signal.clone());
-    let mut plots = vec![answer_plot(&input.name, &input.unit, vec![stick])];
+    let mut plots = vec![test_plot(&input.name, &input.unit, vec![stick])];
     for (index, output) in dataset.outputs().iter().enumerate() {
-        let curves = answer_curves(answers, &time_s, index);
-        plots.push(answer_plot(&output.name, &output.unit, curves));
+        let curves = test_curves(answers, &time_s, index);
+        plots.push(test_plot(&output.name, &output.unit, curves));
     }
     let mut caption = "Linear models, starting at rest; no flight data.".to_owned();
     for (role, answer) in &answers.models {
@@ -73,7 +74,7 @@ pub fn test_answers_figure(answers: &TestAnswers, dataset: &Dataset) -> Figure {
             caption.push_str(&format!(" No {} model: {why}.", role.name()));
         }
     }
-    Figure::new(answers_title(answers, dataset))
+    Figure::new(test_title(answers, dataset))
         .caption(caption)
         .columns(2)
         .aspect(ASPECT)
@@ -81,7 +82,7 @@ pub fn test_answers_figure(answers: &TestAnswers, dataset: &Dataset) -> Figure {
 }
 
 /// Returns `Condition 10: doublet of LON by 1 in for 2 s`.
-fn answers_title(answers: &TestAnswers, dataset: &Dataset) -> String {
+fn test_title(answers: &TestAnswers, dataset: &Dataset) -> String {
     let input = &dataset.inputs()[answers.input];
     let shape = match answers.test.shape {
         TestInputShape::Step => "step",
@@ -97,7 +98,7 @@ fn answers_title(answers: &TestAnswers, dataset: &Dataset) -> String {
     )
 }
 
-fn answer_plot(name: &str, unit: &str, curves: Vec<Curve>) -> Plot {
+fn test_plot(name: &str, unit: &str, curves: Vec<Curve>) -> Plot {
     let label = format!("{name} [{unit}]");
     let mut panel = empty_panel(&label);
     panel.y = panel.y.including(0.0);
@@ -105,7 +106,7 @@ fn answer_plot(name: &str, unit: &str, curves: Vec<Curve>) -> Plot {
 }
 
 /// Returns an output's curves, one for each model, the first model on top.
-fn answer_curves(answers: &TestAnswers, time_s: &[f64], output: usize) -> Vec<Curve> {
+fn test_curves(answers: &TestAnswers, time_s: &[f64], output: usize) -> Vec<Curve> {
     let mut curves = Vec::new();
     for (role, answer) in answers.models.iter().rev() {
         if let Ok(answer) = answer {
@@ -118,9 +119,8 @@ fn answer_curves(answers: &TestAnswers, time_s: &[f64], output: usize) -> Vec<Cu
 }
 
 /// Plots one recorded input, then each quantity with a tolerance that a model simulates: the flight
-/// data with their corridor and each model's response; below, the difference between model and
-/// flight. Curves are thick where they are outside the corridor. The simulation restarts at each
-/// window.
+/// data with their corridor and each model's response; below, the errors. Curves are thick where
+/// they are outside the corridor. The simulation restarts at each window.
 pub fn record_history_figure(history: &RecordHistory, dataset: &Dataset, input: usize) -> Figure {
     let mut plots = vec![record_input_plot(history, dataset, input)];
     for quantity in &history.quantities {
@@ -152,7 +152,7 @@ pub fn record_history_figure(history: &RecordHistory, dataset: &Dataset, input: 
 }
 
 /// Plots a single quantity from a record: the input with index `input`, the quantity with its
-/// corridor, and the difference from flight, below one another over the same time.
+/// corridor, and the errors, below one another over the same time.
 pub fn quantity_figure(
     history: &RecordHistory,
     quantity: &QuantityHistory,
@@ -161,12 +161,12 @@ pub fn quantity_figure(
 ) -> Figure {
     let output = &dataset.outputs()[quantity.output].name;
     let label = format!("{output} [{}]", quantity.unit);
-    let record = empty_panel(&label).with_all(history_marks(quantity, Shown::Recorded));
-    let error = empty_panel("error").with_all(history_marks(quantity, Shown::LessFlight));
+    let record = empty_panel(&label).with_all(history_marks(quantity, Shown::Values));
+    let error = empty_panel("error").with_all(history_marks(quantity, Shown::Error));
     let plot = Plot::new("")
         .panel(record_input_panel(history, dataset, input).weight(INPUT_WEIGHT))
         .panel(record)
-        .panel(error.weight(DIFFERENCE_WEIGHT));
+        .panel(error.weight(ERROR_WEIGHT));
     let title = format!("{}: {}", history.record, quantity.tolerance.quantity);
     Figure::new(title).aspect(ASPECT).plots([plot])
 }
@@ -185,26 +185,26 @@ fn record_input_plot(history: &RecordHistory, dataset: &Dataset, input: usize) -
     Plot::new(panel.y.label.clone()).panel(panel)
 }
 
-/// Plots a quantity's flight data and the models' responses, and below the differences from flight.
+/// Plots a quantity's flight data and the models' responses, and below the errors.
 fn quantity_plot(history: &QuantityHistory) -> Plot {
     let tolerance = &history.tolerance;
     let label = format!("{} [{}]", tolerance.quantity, history.unit);
-    let difference_label = format!("error [{}]", history.unit);
-    let record = empty_panel(&label).with_all(history_marks(history, Shown::Recorded));
-    let difference =
-        empty_panel(&difference_label).with_all(history_marks(history, Shown::LessFlight));
+    let error_label = format!("error [{}]", history.unit);
+    let record = empty_panel(&label).with_all(history_marks(history, Shown::Values));
+    let error = empty_panel(&error_label).with_all(history_marks(history, Shown::Error));
     let title = format!("{}, {}", tolerance.quantity, tolerance_text(tolerance));
     Plot::new(title)
         .panel(record)
-        .panel(difference.weight(DIFFERENCE_WEIGHT))
+        .panel(error.weight(ERROR_WEIGHT))
 }
 
 /// Values that a panel shows for a quantity.
 #[derive(Clone, Copy, PartialEq)]
 enum Shown {
-    Recorded,
-    /// Difference from the flown value at the same sample.
-    LessFlight,
+    /// Values as recorded or simulated.
+    Values,
+    /// Error: difference from the flight data at the same sample.
+    Error,
 }
 
 /// A sample in a window of the record.
@@ -215,7 +215,8 @@ struct Sample<'a> {
 }
 
 impl Sample<'_> {
-    fn flown(self, shown: Shown) -> f64 {
+    /// Returns the flight data at the sample.
+    fn flight(self, shown: Shown) -> f64 {
         self.presented(self.window.flown[self.index], shown)
     }
 
@@ -225,8 +226,8 @@ impl Sample<'_> {
 
     /// Returns the simulated value outside the corridor, NaN inside.
     fn outside(self, shown: Shown) -> f64 {
-        let difference = self.window.simulated[self.index] - self.window.flown[self.index];
-        if difference.abs() > self.width() {
+        let error = self.window.simulated[self.index] - self.window.flown[self.index];
+        if error.abs() > self.half_width() {
             self.simulated(shown)
         } else {
             f64::NAN
@@ -234,14 +235,15 @@ impl Sample<'_> {
     }
 
     /// Returns the corridor's half-width at the sample.
-    fn width(self) -> f64 {
+    fn half_width(self) -> f64 {
         self.window.width[self.index]
     }
 
+    /// Returns the recorded or simulated `value` at the sample as shown.
     fn presented(self, value: f64, shown: Shown) -> f64 {
         match shown {
-            Shown::Recorded => value,
-            Shown::LessFlight => value - self.window.flown[self.index],
+            Shown::Values => value,
+            Shown::Error => value - self.window.flown[self.index],
         }
     }
 }
@@ -286,18 +288,18 @@ fn values(check: &RecordCheck, value: impl Fn(Sample<'_>) -> f64) -> Vec<[f64; 2
     values
 }
 
-/// Draws the corridor, each model with its parts outside the corridor and, unless differences are
-/// shown, the flight data. Corridor and flight data are taken from the check of the corrected model
+/// Draws the corridor, each model with its parts outside the corridor and, unless errors are shown,
+/// the flight data. Corridor and flight data are taken from the check of the corrected model
 /// or, without it, of the first model.
 fn history_marks(history: &QuantityHistory, shown: Shown) -> Vec<Mark> {
     let corrected = history
         .models
         .iter()
         .find(|(role, _)| *role == RequirementRole::Corrected);
-    let Some((_, flown_check)) = corrected.or(history.models.first()) else {
+    let Some((_, flight_check)) = corrected.or(history.models.first()) else {
         return Vec::new();
     };
-    let mut marks = vec![Mark::from(corridor(flown_check, shown))];
+    let mut marks = vec![Mark::from(corridor(flight_check, shown))];
     for (role, check) in history.models.iter().rev() {
         let line = model_line(*role);
         let simulated = values(check, |sample| sample.simulated(shown));
@@ -311,9 +313,9 @@ fn history_marks(history: &QuantityHistory, shown: Shown) -> Vec<Mark> {
         }
     }
     // The flight data lie on top.
-    if shown == Shown::Recorded {
-        let flown = values(flown_check, |sample| sample.flown(shown));
-        marks.push(Curve::through("flown", FLOWN, flown).key("flown").into());
+    if shown == Shown::Values {
+        let flight = values(flight_check, |sample| sample.flight(shown));
+        marks.push(Curve::through("flown", FLIGHT, flight).key("flown").into());
     }
     marks
 }
@@ -323,8 +325,12 @@ fn corridor(check: &RecordCheck, shown: Shown) -> Envelope {
     for Instant { time_s, sample } in instants(check) {
         points.push(match sample {
             Some(sample) => {
-                let flown = sample.flown(shown);
-                [time_s, flown - sample.width(), flown + sample.width()]
+                let flight = sample.flight(shown);
+                [
+                    time_s,
+                    flight - sample.half_width(),
+                    flight + sample.half_width(),
+                ]
             }
             None => [time_s, f64::NAN, f64::NAN],
         });

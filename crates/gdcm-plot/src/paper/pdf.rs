@@ -37,29 +37,29 @@ const QUARTER: f64 = 0.552_284_749_830_793_4;
 pub fn pdf(drawing: &Drawing) -> io::Result<Vec<u8>> {
     let [catalog, pages, page, content, info] = [1, 2, 3, 4, 5].map(Ref::new);
     // Step 1.
-    let drawn = Page::paint(drawing);
+    let painted = Page::paint(drawing);
     // Step 2.
     let mut pdf = Pdf::new();
     pdf.catalog(catalog).pages(pages);
     pdf.pages(pages).kids([page]).count(1);
-    let stream = packed(&drawn.content.finish())?;
+    let stream = packed(&painted.content.finish())?;
     pdf.stream(content, &stream).filter(Filter::FlateDecode);
-    let fonts = drawn.used.write(&mut pdf, Ref::new(6))?;
+    let fonts = painted.used.write(&mut pdf, Ref::new(6))?;
     // Step 3.
-    let mut entry = pdf.page(page);
+    let mut page_object = pdf.page(page);
     let [width, height] = drawing.size.map(|length| length as f32);
-    entry
+    page_object
         .parent(pages)
         .media_box(Rect::new(0.0, 0.0, width, height))
         .contents(content);
-    let mut resources = entry.resources();
-    let mut list = resources.fonts();
+    let mut resources = page_object.resources();
+    let mut font_list = resources.fonts();
     for (name, font) in fonts {
-        list.pair(Name(name.as_bytes()), font);
+        font_list.pair(Name(name.as_bytes()), font);
     }
-    list.finish();
+    font_list.finish();
     resources.finish();
-    entry.finish();
+    page_object.finish();
     pdf.document_info(info)
         .title(TextStr(&sanitized(&drawing.title)))
         .creator(TextStr("gdcm"));
@@ -253,13 +253,13 @@ const IDENTITY: SystemInfo<'static> = SystemInfo {
 /// The used letters, numbered in each font by their first use.
 #[derive(Default)]
 struct UsedLetters {
-    /// Each font's used letters, ordered as [`FONTS`].
-    fonts: [Used; FONTS.len()],
+    /// In the order of [`FONTS`].
+    fonts: [UsedFont; FONTS.len()],
 }
 
 /// The letters used in a font.
 #[derive(Default)]
-struct Used {
+struct UsedFont {
     numbers: GlyphRemapper,
     /// Letter number n is at index n - 1.
     letters: Vec<Letter>,
@@ -268,7 +268,7 @@ struct Used {
 impl UsedLetters {
     /// Returns a letter's number in its font, assigned at its first use.
     fn code(&mut self, letter: &Letter) -> u16 {
-        let Used { numbers, letters } = &mut self.fonts[letter.font];
+        let UsedFont { numbers, letters } = &mut self.fonts[letter.font];
         let is_new = numbers.get(letter.glyph).is_none();
         let code = numbers.remap(letter.glyph);
         if is_new {
@@ -306,7 +306,7 @@ struct FontObjects {
     file: Ref,
 }
 
-impl Used {
+impl UsedFont {
     /// Writes the used letters of the font at this index in [`FONTS`]; returns the font object.
     fn write(&self, pdf: &mut Pdf, index: usize, next: &mut Ref) -> io::Result<Ref> {
         let (name, bytes) = FONTS[index];

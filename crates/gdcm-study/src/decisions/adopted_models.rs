@@ -58,18 +58,18 @@ impl AdoptedModels {
     /// none).
     pub fn from_identification(
         found: &Identification,
-        offered: AdoptionChoice,
+        choice: AdoptionChoice,
         records: Vec<ConditionRecord>,
     ) -> Self {
         let mut models = Vec::new();
-        if offered.refined {
+        if choice.refined {
             models.push(found.refined.clone());
             models.extend_from_slice(&found.bundle);
         }
-        if offered.unrefined {
+        if choice.unrefined {
             models.push(found.unrefined.clone());
         }
-        if offered.measured
+        if choice.measured
             && let Some(response) = found.measured.measured()
         {
             let origin = Origin::Identified {

@@ -1,8 +1,6 @@
 //! A study's models that differ from those in its dataset's file: adopted models, and channels with
 //! reversed sign. The study's dataset contains these changes, so that no other code needs to apply
 //! them.
-//!
-//! In names, "taken" models are adopted models, and "turned" channels have a reversed sign.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -13,37 +11,40 @@ use gdcm_model::dataset::{BundleKind, ConditionId, Dataset};
 
 use super::adopted_models::AdoptedModels;
 use super::edit_refusal::EditRefusal;
-use super::signs::{SignRole, Signs, TurnedChannel, turned};
+use super::signs::{ReversedChannel, SignRole, Signs, with_reversed_signs};
 use super::study::Study;
 
 impl Study {
     /// Returns the dataset as in its file, without adopted models and with the original signs.
     pub fn file_dataset(&self) -> &Arc<Dataset> {
-        self.file.as_ref().unwrap_or(&self.dataset)
+        self.file_dataset.as_ref().unwrap_or(&self.dataset)
     }
 
     /// Returns the adopted models, condition by condition.
-    pub fn taken_models(&self) -> impl Iterator<Item = (ConditionId, &Arc<AdoptedModels>)> {
-        self.taken.iter().map(|(id, models)| (*id, models))
+    pub fn adopted_models(&self) -> impl Iterator<Item = (ConditionId, &Arc<AdoptedModels>)> {
+        self.adopted.iter().map(|(id, models)| (*id, models))
     }
 
     /// Adopts models into all of these conditions, or into none if one is refused. Decisions about
     /// removed models are dropped.
-    pub(crate) fn take_models(
+    pub(crate) fn adopt_models(
         &mut self,
-        taken: &[(ConditionId, Arc<AdoptedModels>)],
+        adopted: &[(ConditionId, Arc<AdoptedModels>)],
     ) -> Result<(), EditRefusal> {
-        let mut models = self.taken.clone();
-        models.extend(taken.iter().cloned());
-        self.rebuild(models, self.signs.clone())
+        let mut all_adopted = self.adopted.clone();
+        all_adopted.extend(adopted.iter().cloned());
+        self.rebuild(all_adopted, self.signs.clone())
     }
 
     /// Restores a condition's identified models from the file, and drops decisions about models
     /// that the file does not have.
-    pub(crate) fn return_models(&mut self, condition: ConditionId) -> Result<(), EditRefusal> {
-        let mut models = self.taken.clone();
-        models.remove(&condition);
-        self.rebuild(models, self.signs.clone())
+    pub(crate) fn restore_file_models(
+        &mut self,
+        condition: ConditionId,
+    ) -> Result<(), EditRefusal> {
+        let mut adopted = self.adopted.clone();
+        adopted.remove(&condition);
+        self.rebuild(adopted, self.signs.clone())
     }
 
     /// Reverses a channel's sign in the models with `role`; `None` restores it in all.
@@ -58,24 +59,25 @@ impl Study {
         let mut signs = self.signs.clone();
         signs.remove(&channel);
         signs.extend(role.map(|role| (channel, role)));
-        self.rebuild(self.taken.clone(), signs)
+        self.rebuild(self.adopted.clone(), signs)
     }
 
     /// Applies these adopted models and then the reversed signs to the dataset from the file, so
     /// that the signs of adopted models are reversed too.
     fn rebuild(
         &mut self,
-        models: BTreeMap<ConditionId, Arc<AdoptedModels>>,
+        adopted: BTreeMap<ConditionId, Arc<AdoptedModels>>,
         signs: Signs,
     ) -> Result<(), EditRefusal> {
         let file = Arc::clone(self.file_dataset());
         let mut dataset = Arc::clone(&file);
-        for (id, taken) in &models {
-            dataset = Arc::new(taken.put_into(&dataset, *id)?);
+        for (id, models) in &adopted {
+            dataset = Arc::new(models.put_into(&dataset, *id)?);
         }
-        self.dataset = turned(&dataset, &signs)?;
-        self.file = (!models.is_empty() || !signs.is_empty()).then_some(file);
-        self.taken = models;
+        self.dataset = with_reversed_signs(&dataset, &signs)?;
+        let is_changed = !adopted.is_empty() || !signs.is_empty();
+        self.file_dataset = if is_changed { Some(file) } else { None };
+        self.adopted = adopted;
         self.signs = signs;
         self.forget_absent_models();
         Ok(())
@@ -101,16 +103,16 @@ impl Study {
     }
 
     /// Returns the channels with reversed sign, by name.
-    pub fn turned_channels(&self) -> Vec<TurnedChannel> {
+    pub fn reversed_channels(&self) -> Vec<ReversedChannel> {
         self.signs
             .iter()
-            .map(|(channel, role)| TurnedChannel {
+            .map(|(channel, role)| ReversedChannel {
                 channel: channel.name_in(&self.dataset),
                 side: match channel {
                     Channel::Input(_) => ChannelSide::Input,
                     Channel::Output(_) => ChannelSide::Output,
                 },
-                of: *role,
+                role: *role,
             })
             .collect()
     }

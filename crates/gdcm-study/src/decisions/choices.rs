@@ -1,8 +1,9 @@
 //! The engineer's choices among a condition's models.
 //!
-//! A *rejected* model neither represents its bundle nor counts in the scores of the models that are
-//! *kept*. The medoid of the kept models represents the bundle, unless a model is *pinned* to
-//! represent it (M5).
+//! A *bundle* contains a condition's physics models, or its identified models. A *rejected* model
+//! neither represents its bundle nor counts in the scores of the models that are *kept*. The medoid
+//! of the kept models, the one closest to the others, represents the bundle, unless a model is
+//! *pinned* to represent it (M5).
 
 use std::collections::{BTreeMap, BTreeSet};
 

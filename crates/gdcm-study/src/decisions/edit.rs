@@ -1,7 +1,8 @@
 //! Every kind of decision about a study, and the only code that applies it.
 //!
-//! A *held* response is constrained: its gain and delay must be matched exactly. A *kept* model is
-//! one that is not rejected. To *take* models means to adopt them from an identification.
+//! A *held* response is constrained: its gain and delay must be matched exactly. A *bundle*
+//! contains a condition's physics models, or its identified models; those that are not rejected are
+//! *kept*, and their medoid, the model closest to the others, represents the bundle (M5).
 
 use std::sync::Arc;
 
@@ -55,9 +56,9 @@ pub enum Edit {
     },
     /// Constrains the dataset's on-axis responses, and releases all others.
     ConstrainOnAxis,
-    /// Constrains or releases a response.
+    /// Constrains a response (`true`) or releases it.
     Hold(Pair, bool),
-    /// Fits a response, or ignores it in the objective.
+    /// Fits a response (`true`), or ignores it in the objective.
     Fit(Pair, bool),
     /// Changes a setting; built by [`Setting::to`].
     Set(&'static Setting, Value),
@@ -69,8 +70,9 @@ pub enum Edit {
         role: Option<SignRole>,
     },
     /// Adopts models identified from flight records instead of the conditions' identified bundles.
-    TakeModels(Vec<(ConditionId, Arc<AdoptedModels>)>),
-    ReturnModels {
+    AdoptModels(Vec<(ConditionId, Arc<AdoptedModels>)>),
+    /// Restores a condition's identified models from the file.
+    RestoreFileModels {
         condition: ConditionId,
     },
     /// Changes the requirement settings, which are common to all variants: the changed part, and
@@ -82,11 +84,11 @@ pub enum Edit {
         decision: ParameterDecision,
     },
     /// Stores the present decisions under a name.
-    KeepVariant {
+    StoreVariant {
         name: String,
     },
     /// Replaces the present decisions with those stored under a name.
-    TakeVariant {
+    ApplyVariant {
         name: String,
     },
     RemoveVariant {
@@ -166,8 +168,8 @@ impl Study {
             Edit::Fit(pair, fitted) => mark(&mut self.settings.ignored, *pair, !*fitted)?,
             Edit::Set(setting, value) => setting.set(&mut self.settings, *value)?,
             Edit::SetSign { channel, role } => self.set_sign(*channel, *role)?,
-            Edit::TakeModels(taken) => self.take_models(taken)?,
-            Edit::ReturnModels { condition } => self.return_models(*condition)?,
+            Edit::AdoptModels(adopted) => self.adopt_models(adopted)?,
+            Edit::RestoreFileModels { condition } => self.restore_file_models(*condition)?,
             Edit::SetRequirements(_, settings) => self.requirements = Arc::clone(settings),
             Edit::DecideParameter { name, decision } => {
                 let dataset = Arc::clone(&self.dataset);
@@ -175,8 +177,8 @@ impl Study {
                     .physics_parameters
                     .decide(&dataset, name, *decision)?;
             }
-            Edit::KeepVariant { name } => self.keep_variant(name)?,
-            Edit::TakeVariant { name } => self.take_variant(name)?,
+            Edit::StoreVariant { name } => self.store_variant(name)?,
+            Edit::ApplyVariant { name } => self.apply_variant(name)?,
             Edit::RemoveVariant { name } => self.remove_variant(name)?,
             Edit::RenameVariant { from, to } => self.rename_variant(from, to)?,
         }

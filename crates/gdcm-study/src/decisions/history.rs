@@ -3,7 +3,8 @@
 //! An undo step stores the whole study before its change. Decisions that *continue* one another,
 //! such as positions of a slider being dragged, form a single step. In a *session* (the settings
 //! are open in the window) each change of a setting is a step; when the session ends, consecutive
-//! ones are merged. State *beside* the study is state outside it that the same undo restores.
+//! steps of the session are merged. Some decisions of the window change state *outside* the study,
+//! which the same undo restores.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -28,7 +29,7 @@ pub enum Change<C = ()> {
     /// Changes to several settings in one session (see [`History::begin_session`]), in order.
     Settings(Vec<Edit>),
     /// A change to state outside the study.
-    Beside(C),
+    Outside(C),
     /// The dataset was read again from the file with this name.
     Reload {
         file: String,
@@ -41,7 +42,7 @@ pub struct Step<B = (), C = ()> {
     pub change: Change<C>,
     /// The study before the change in an undo step, after it in a redo step.
     pub study: Study,
-    beside: B,
+    outside: B,
     /// Session in which a setting was changed; see [`History::begin_session`].
     session: Option<u64>,
 }
@@ -49,17 +50,17 @@ pub struct Step<B = (), C = ()> {
 /// Undo history: snapshots of the study, with the changes between them.
 ///
 /// `B` is a snapshot of state outside the study, which some steps change instead of the study
-/// ([`History::record_beside`]). Such a step stores the snapshot from before the change; undo and
+/// ([`History::record_outside`]). Such a step stores the snapshot from before the change; undo and
 /// redo exchange it for the present one. All other steps store `B::default()`. `C` describes a
 /// change to that state.
 #[derive(Clone, Debug)]
 pub struct History<B = (), C = ()> {
-    past: Vec<Step<B, C>>,
-    future: Vec<Step<B, C>>,
-    /// Redo steps removed by the last decision, which [`History::forget`] restores.
-    lost: Vec<Step<B, C>>,
+    undo_steps: Vec<Step<B, C>>,
+    redo_steps: Vec<Step<B, C>>,
+    /// Redo steps removed by the last decision, which [`History::withdraw`] restores.
+    removed_redo_steps: Vec<Step<B, C>>,
     /// The last decision, as long as the next decision may continue it (a slider being dragged).
-    open: Option<Edit>,
+    continuable: Option<Edit>,
     /// Number of the session in progress.
     session: Option<u64>,
     /// Number of sessions so far.
@@ -69,10 +70,10 @@ pub struct History<B = (), C = ()> {
 impl<B, C> Default for History<B, C> {
     fn default() -> Self {
         Self {
-            past: Vec::new(),
-            future: Vec::new(),
-            lost: Vec::new(),
-            open: None,
+            undo_steps: Vec::new(),
+            redo_steps: Vec::new(),
+            removed_redo_steps: Vec::new(),
+            continuable: None,
             session: None,
             sessions: 0,
         }
@@ -99,7 +100,7 @@ impl<C> Change<C> {
         match self {
             Self::Decision(edit) => vec![edit.clone()],
             Self::Settings(edits) => edits.clone(),
-            Self::Beside(_) | Self::Reload { .. } => Vec::new(),
+            Self::Outside(_) | Self::Reload { .. } => Vec::new(),
         }
     }
 }
@@ -122,56 +123,60 @@ impl<B: Default, C> History<B, C> {
     /// A decision that continues the last one (see [`Edit::continues`]) adds no step until
     /// [`History::seal`].
     pub fn record(&mut self, before: Study, edit: &Edit) {
-        let lost = std::mem::take(&mut self.future);
-        if self.open.as_ref().is_some_and(|open| edit.continues(open)) {
+        let removed = std::mem::take(&mut self.redo_steps);
+        if let Some(last) = &self.continuable
+            && edit.continues(last)
+        {
+            // `removed` is empty: only undoing and withdrawing add redo steps, and both end the
+            // continuation.
             return;
         }
-        self.lost = lost;
+        self.removed_redo_steps = removed;
         let is_setting = matches!(edit, Edit::Set(..));
         self.push(Step {
             change: Change::Decision(edit.clone()),
             study: before,
-            beside: B::default(),
+            outside: B::default(),
             session: if is_setting { self.session } else { None },
         });
-        self.open = Some(edit.clone());
+        self.continuable = Some(edit.clone());
     }
 
     /// Stores a decision that leaves the study unchanged; `before` is the former state outside the
     /// study.
-    pub fn record_beside(&mut self, study: Study, change: C, before: B) {
-        self.lost = std::mem::take(&mut self.future);
+    pub fn record_outside(&mut self, study: Study, change: C, before: B) {
+        self.removed_redo_steps = std::mem::take(&mut self.redo_steps);
         self.push(Step {
-            change: Change::Beside(change),
+            change: Change::Outside(change),
             study,
-            beside: before,
+            outside: before,
             session: None,
         });
-        self.open = None;
+        self.continuable = None;
     }
 
     /// Stores `before`, the study with the dataset as it was before a reload of `file`.
     pub fn record_reload(&mut self, before: Study, file: String) {
-        self.future.clear();
+        self.redo_steps.clear();
         self.push(Step {
             change: Change::Reload { file },
             study: before,
-            beside: B::default(),
+            outside: B::default(),
             session: None,
         });
-        self.open = None;
+        self.continuable = None;
     }
 
     /// Adds an undo step, and removes the oldest steps beyond the limits on number and memory.
     fn push(&mut self, step: Step<B, C>) {
-        if self.past.len() == MOST_STEPS {
-            self.past.remove(0);
+        if self.undo_steps.len() == MOST_STEPS {
+            self.undo_steps.remove(0);
         }
-        let has_other_models = match self.past.last() {
+        let has_other_models = match self.undo_steps.last() {
             Some(last) => !Arc::ptr_eq(&last.study.dataset, &step.study.dataset),
             None => false,
         };
-        self.past.push(step);
+        self.undo_steps.push(step);
         if has_other_models {
             self.limit_models();
         }
@@ -181,21 +186,22 @@ impl<B: Default, C> History<B, C> {
     /// much as [`LEAST_DATASETS`] datasets like the last one if these are larger.
     fn limit_models(&mut self) {
         let mut most_bytes = MOST_BYTES;
-        if let Some(last) = self.past.last() {
+        if let Some(last) = self.undo_steps.last() {
             let mut bytes = 0;
             for condition in last.study.dataset.conditions() {
                 bytes += condition.model_bytes();
             }
             most_bytes = most_bytes.max(LEAST_DATASETS * bytes);
         }
-        while self.past.len() > 1 && self.model_bytes() > most_bytes {
-            let oldest = Arc::clone(&self.past[0].study.dataset);
+        while self.undo_steps.len() > 1 && self.model_bytes() > most_bytes {
+            let oldest = Arc::clone(&self.undo_steps[0].study.dataset);
             let steps_of_oldest = self
-                .past
+                .undo_steps
                 .iter()
                 .take_while(|step| Arc::ptr_eq(&step.study.dataset, &oldest))
                 .count();
-            self.past.drain(..steps_of_oldest.min(self.past.len() - 1));
+            self.undo_steps
+                .drain(..steps_of_oldest.min(self.undo_steps.len() - 1));
         }
     }
 
@@ -203,7 +209,12 @@ impl<B: Default, C> History<B, C> {
     pub fn model_bytes(&self) -> usize {
         let mut counted: BTreeSet<*const Condition> = BTreeSet::new();
         let mut bytes = 0;
-        for step in self.past.iter().chain(&self.future).chain(&self.lost) {
+        for step in self
+            .undo_steps
+            .iter()
+            .chain(&self.redo_steps)
+            .chain(&self.removed_redo_steps)
+        {
             for dataset in step.study.datasets() {
                 for condition in dataset.conditions() {
                     if counted.insert(Arc::as_ptr(condition)) {
@@ -217,7 +228,7 @@ impl<B: Default, C> History<B, C> {
 
     /// Closes the last decision: no later decision continues it.
     pub fn seal(&mut self) {
-        self.open = None;
+        self.continuable = None;
     }
 
     /// Begins a session: until [`History::end_session`], each change to a setting is a separate
@@ -239,8 +250,8 @@ impl<B: Default, C> History<B, C> {
             return;
         };
         self.seal();
-        let mut merged: Vec<Step<B, C>> = Vec::with_capacity(self.past.len());
-        for step in std::mem::take(&mut self.past) {
+        let mut merged: Vec<Step<B, C>> = Vec::with_capacity(self.undo_steps.len());
+        for step in std::mem::take(&mut self.undo_steps) {
             let is_in_session = step.session == Some(session);
             if let Some(last) = merged.last_mut()
                 && is_in_session
@@ -253,19 +264,19 @@ impl<B: Default, C> History<B, C> {
             merged.push(step);
         }
         drop_if_unchanged(&mut merged, session, now);
-        self.past = merged;
+        self.undo_steps = merged;
     }
 
     /// Undoes the last step and returns the study before it; `None` if there is no step. `now` is
     /// the present study, kept for a redo; `exchange` restores the state outside the study from the
     /// step's snapshot, and returns a snapshot of the present state.
     pub fn undo(&mut self, now: &Study, exchange: impl FnOnce(B) -> B) -> Option<Study> {
-        let step = self.past.pop()?;
-        self.open = None;
-        self.future.push(Step {
+        let step = self.undo_steps.pop()?;
+        self.continuable = None;
+        self.redo_steps.push(Step {
             change: step.change,
             study: now.clone(),
-            beside: exchange(step.beside),
+            outside: exchange(step.outside),
             session: step.session,
         });
         Some(step.study)
@@ -274,25 +285,25 @@ impl<B: Default, C> History<B, C> {
     /// Withdraws the last decision if it was `edit` and is not sealed, and returns the study before
     /// it; otherwise returns `None`. There is no redo step, and the redo steps that the decision
     /// had removed are available again.
-    pub fn forget(&mut self, edit: &Edit) -> Option<Study> {
-        if self.open.as_ref() != Some(edit) {
+    pub fn withdraw(&mut self, edit: &Edit) -> Option<Study> {
+        if self.continuable.as_ref() != Some(edit) {
             return None;
         }
-        let step = self.past.pop()?;
-        self.open = None;
-        self.future = std::mem::take(&mut self.lost);
+        let step = self.undo_steps.pop()?;
+        self.continuable = None;
+        self.redo_steps = std::mem::take(&mut self.removed_redo_steps);
         Some(step.study)
     }
 
     /// Redoes the last undone step and returns the study after it; `None` if there is no such step.
     /// `now` is the present study, kept for an undo; `exchange` is as in [`History::undo`].
     pub fn redo(&mut self, now: &Study, exchange: impl FnOnce(B) -> B) -> Option<Study> {
-        let step = self.future.pop()?;
-        self.open = None;
-        self.past.push(Step {
+        let step = self.redo_steps.pop()?;
+        self.continuable = None;
+        self.undo_steps.push(Step {
             change: step.change,
             study: now.clone(),
-            beside: exchange(step.beside),
+            outside: exchange(step.outside),
             session: step.session,
         });
         Some(step.study)
@@ -300,12 +311,12 @@ impl<B: Default, C> History<B, C> {
 
     /// Returns the step that [`History::undo`] would undo.
     pub fn undo_step(&self) -> Option<&Step<B, C>> {
-        self.past.last()
+        self.undo_steps.last()
     }
 
     /// Returns the step that [`History::redo`] would redo.
     pub fn redo_step(&self) -> Option<&Step<B, C>> {
-        self.future.last()
+        self.redo_steps.last()
     }
 }
 
@@ -313,7 +324,7 @@ impl<B: Default, C> History<B, C> {
 mod tests {
     use super::super::setting_table::{ALPHA_DELAY, ALPHA_GAIN};
     use super::*;
-    use crate::decisions::signs::{SignRole, turned};
+    use crate::decisions::signs::{SignRole, with_reversed_signs};
     use crate::reference_tests::reference_dataset;
     use gdcm_method::correction::Channel;
     use gdcm_model::dataset::{BundleKind, ConditionId, ModelId};
@@ -332,19 +343,19 @@ mod tests {
         let mut history: History = History::default();
         let steps = 2 * MOST_BYTES / bytes;
         for _ in 0..steps {
-            let other = turned(&dataset, &signs).unwrap();
+            let other = with_reversed_signs(&dataset, &signs).unwrap();
             history.record(Study::new(other), &Edit::ConstrainOnAxis);
             history.seal();
         }
         assert!(history.model_bytes() <= MOST_BYTES.max(LEAST_DATASETS * bytes));
-        assert!(history.past.len() >= LEAST_DATASETS);
+        assert!(history.undo_steps.len() >= LEAST_DATASETS);
         assert!(
-            history.past.len() < steps,
+            history.undo_steps.len() < steps,
             "{} of {steps}",
-            history.past.len()
+            history.undo_steps.len()
         );
         let now = Study::new(dataset);
-        assert!(history.undo(&now, |beside| beside).is_some());
+        assert!(history.undo(&now, |outside| outside).is_some());
     }
 
     #[test]
@@ -355,7 +366,7 @@ mod tests {
             history.record(study.clone(), &Edit::ConstrainOnAxis);
             history.seal();
         }
-        assert_eq!(history.past.len(), MOST_STEPS);
+        assert_eq!(history.undo_steps.len(), MOST_STEPS);
     }
 
     struct Editor {
@@ -382,8 +393,8 @@ mod tests {
         }
 
         fn changes(&self) -> Vec<Change> {
-            let past = self.history.past.iter();
-            past.map(|step| step.change.clone()).collect()
+            let steps = self.history.undo_steps.iter();
+            steps.map(|step| step.change.clone()).collect()
         }
     }
 
@@ -399,7 +410,11 @@ mod tests {
         editor.decide(ALPHA_GAIN.to(2.0));
         editor.decide(ALPHA_DELAY.to(3.0));
         editor.decide(ALPHA_GAIN.to(4.0));
-        assert_eq!(editor.history.past.len(), 3, "each can be undone alone");
+        assert_eq!(
+            editor.history.undo_steps.len(),
+            3,
+            "each can be undone alone"
+        );
         editor.history.end_session(&editor.study);
         let merged = Change::Settings(vec![ALPHA_DELAY.to(3.0), ALPHA_GAIN.to(4.0)]);
         assert_eq!(editor.changes(), [merged]);

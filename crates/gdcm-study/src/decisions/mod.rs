@@ -14,6 +14,7 @@ pub mod physics_settings;
 pub mod requirement_settings;
 pub mod setting;
 pub mod setting_table;
+mod setting_text;
 pub mod setting_value;
 pub mod settings;
 pub mod signs;

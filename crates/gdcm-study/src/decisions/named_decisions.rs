@@ -1,8 +1,8 @@
 //! Decisions with channels, conditions and models by name, so that they can be carried over from
 //! one dataset to another.
 //!
-//! In names, to *take* means to take over, and *taken* models are those adopted from an
-//! identification. *Requirements* are the settings for the qualification checks.
+//! *Adopted* models come from an identification and replace those in the file; a *reversed* channel
+//! has the opposite sign. *Requirements* are the settings for the qualification checks.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -16,7 +16,7 @@ use super::edit::Edit;
 use super::export_choices::ExportChoices;
 use super::requirement_settings::RequirementSettings;
 use super::settings::{ResponseMark, ResponseNames, Settings};
-use super::signs::TurnedChannel;
+use super::signs::ReversedChannel;
 use super::study::{Study, Variant};
 
 /// A study's decisions, with channels, conditions and models by name: independent of the dataset.
@@ -25,9 +25,9 @@ pub struct Decisions {
     pub settings: Settings<ResponseNames>,
     pub choices: BTreeMap<ConditionId, ConditionChoice>,
     /// Models adopted instead of those in the file.
-    pub taken: Vec<(ConditionId, Arc<AdoptedModels>)>,
+    pub adopted: Vec<(ConditionId, Arc<AdoptedModels>)>,
     /// The channels with reversed sign.
-    pub signs: Vec<TurnedChannel>,
+    pub signs: Vec<ReversedChannel>,
     pub requirements: Arc<RequirementSettings>,
     /// Choices in the last export.
     pub exports: Arc<ExportChoices>,
@@ -47,8 +47,8 @@ impl Decisions {
         Self {
             settings: study.settings.named(&study.dataset),
             choices: study.choices.clone(),
-            taken: study.taken.clone().into_iter().collect(),
-            signs: study.turned_channels(),
+            adopted: study.adopted.clone().into_iter().collect(),
+            signs: study.reversed_channels(),
             requirements: Arc::clone(&study.requirements),
             exports: Arc::clone(&study.exports),
             variants,
@@ -66,19 +66,19 @@ impl Decisions {
             not_applied: Vec::new(),
         };
         carried.study.exports = Arc::clone(&self.exports);
-        carried.take_requirements(&self.requirements);
-        carried.take_settings(&self.settings);
-        for taken in &self.taken {
-            carried.apply(&Edit::TakeModels(vec![taken.clone()]));
+        carried.apply_requirements(&self.requirements);
+        carried.apply_settings(&self.settings);
+        for adopted in &self.adopted {
+            carried.apply_edit(&Edit::AdoptModels(vec![adopted.clone()]));
         }
-        for turned in &self.signs {
-            carried.take_sign(turned);
+        for reversed in &self.signs {
+            carried.apply_sign(reversed);
         }
         for (condition, choice) in &self.choices {
-            carried.take_choice(*condition, choice);
+            carried.apply_choice(*condition, choice);
         }
         for (name, decisions) in &self.variants {
-            carried.take_variant(name, decisions);
+            carried.apply_variant(name, decisions);
         }
         (carried.study, carried.not_applied)
     }
@@ -101,7 +101,7 @@ impl CarriedDecisions {
     }
 
     /// Applies an edit, or adds it to `not_applied` with the reason for its refusal.
-    fn apply(&mut self, edit: &Edit) {
+    fn apply_edit(&mut self, edit: &Edit) {
         if let Err(refusal) = self.study.apply(edit) {
             let decision = CarriedDecision::Edit {
                 edit: edit.clone(),
@@ -113,7 +113,7 @@ impl CarriedDecisions {
 
     /// Takes over the requirement settings. Settings for channels that the dataset lacks are kept,
     /// and added to `not_applied`.
-    fn take_requirements(&mut self, requirements: &Arc<RequirementSettings>) {
+    fn apply_requirements(&mut self, requirements: &Arc<RequirementSettings>) {
         self.study.requirements = Arc::clone(requirements);
         for decision in requirements.without_channel(&self.study.dataset) {
             let decision = CarriedDecision::Requirement(decision);
@@ -121,7 +121,7 @@ impl CarriedDecisions {
         }
     }
 
-    fn take_settings(&mut self, settings: &Settings<ResponseNames>) {
+    fn apply_settings(&mut self, settings: &Settings<ResponseNames>) {
         self.study.settings = settings.with_responses(|mark, names| self.marked(mark, names));
     }
 
@@ -144,14 +144,14 @@ impl CarriedDecisions {
         table
     }
 
-    fn take_sign(&mut self, turned: &TurnedChannel) {
-        match turned.find(&self.study.dataset) {
-            Some(channel) => self.apply(&Edit::SetSign {
+    fn apply_sign(&mut self, reversed: &ReversedChannel) {
+        match reversed.find(&self.study.dataset) {
+            Some(channel) => self.apply_edit(&Edit::SetSign {
                 channel,
-                role: Some(turned.of),
+                role: Some(reversed.role),
             }),
             None => {
-                let channel = turned.channel.clone();
+                let channel = reversed.channel.clone();
                 self.refuse(CarriedDecision::Sign { channel }, NotApplied::NoChannel);
             }
         }
@@ -159,47 +159,47 @@ impl CarriedDecisions {
 
     /// Applies every choice that departs from the default (scheduled, not held out, no model
     /// rejected or pinned) as an edit, so that invalid choices are refused.
-    fn take_choice(&mut self, condition: ConditionId, choice: &ConditionChoice) {
+    fn apply_choice(&mut self, condition: ConditionId, choice: &ConditionChoice) {
         if !choice.scheduled {
-            self.apply(&Edit::SetScheduled {
+            self.apply_edit(&Edit::SetScheduled {
                 condition,
                 scheduled: false,
             });
         }
         if choice.held_out {
-            self.apply(&Edit::SetHeldOut {
+            self.apply_edit(&Edit::SetHeldOut {
                 condition,
                 held_out: true,
             });
         }
         for kind in BundleKind::BOTH {
-            self.take_bundle_choice(condition, kind, choice.bundle(kind));
+            self.apply_bundle_choice(condition, kind, choice.bundle(kind));
         }
     }
 
-    fn take_bundle_choice(
+    fn apply_bundle_choice(
         &mut self,
         condition: ConditionId,
         kind: BundleKind,
         choice: &BundleChoice,
     ) {
         for name in &choice.rejected {
-            self.apply(&Edit::Reject(ModelId::new(condition, kind, name)));
+            self.apply_edit(&Edit::Reject(ModelId::new(condition, kind, name)));
         }
         for (name, reason) in &choice.reasons {
             if choice.rejected.contains(name) {
                 let model = ModelId::new(condition, kind, name);
-                self.apply(&Edit::SetReason(model, reason.clone()));
+                self.apply_edit(&Edit::SetReason(model, reason.clone()));
             }
         }
         if let Some(name) = &choice.pinned {
-            self.apply(&Edit::Pin(ModelId::new(condition, kind, name)));
+            self.apply_edit(&Edit::Pin(ModelId::new(condition, kind, name)));
         }
     }
 
     /// Adds a variant with the decisions that apply to the dataset; an existing variant of this
     /// name is kept instead.
-    fn take_variant(&mut self, name: &str, decisions: &Decisions) {
+    fn apply_variant(&mut self, name: &str, decisions: &Decisions) {
         let (variant, mut not_applied) = decisions.applied_to(Arc::clone(&self.study.dataset));
         for difference in &mut not_applied {
             if let Difference::NotApplied { variant, .. } = difference {

@@ -36,15 +36,17 @@ pub struct RequirementSettings {
     pub test: TestInput,
 }
 
-/// Limits on the difference between a corrected and the identified model in the requirement grid.
-/// They do not come from a standard.
+/// Limits on the difference between a corrected and the identified model in the requirement grid,
+/// the overview of all requirements. They do not come from a standard; the engineer can change
+/// them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct OverviewLimits {
     /// Maximum relative difference in bandwidth between the corrected and the identified model.
     pub bandwidth: f64,
+    /// Maximum difference in phase delay between the corrected and the identified model \[s\].
     pub phase_delay_s: f64,
-    /// Maximum mean J over the on-axis responses.
+    /// Maximum mean J over the on-axis responses; J is the cost of a mismatch (M4).
     pub mean_j: f64,
     /// Minimum share of the band inside the MUAD envelopes over the on-axis responses, 0 to 1.
     pub muad_share: f64,
@@ -61,7 +63,7 @@ impl Default for OverviewLimits {
     }
 }
 
-/// Error: a limit in the grid is not positive.
+/// Error for a limit in the grid that is not positive.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("limits of the requirements: expected {name} above zero, found {}", number(*found))]
 pub struct OverviewLimitsError {

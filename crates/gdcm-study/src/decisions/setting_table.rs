@@ -1,6 +1,9 @@
 //! Settings table: name, key in files, command-line option, allowed values and place of the window
 //! control. Undo, decision comparison, refusals, the report, the command line and the window use
 //! it. The crate `gdcm-words` contains the captions and help texts.
+//!
+//! A value outside its range is refused (`docs/limits.md`); a range is not a recommendation. The
+//! step of a control is the change in the displayed value for each point dragged.
 
 use gdcm_method::correction::delta::GainSource;
 use gdcm_method::correction::{GainBounds, GainObjective};

@@ -1,5 +1,5 @@
-//! Channels with reversed sign, and datasets with the reversal applied. In names, "turned" means
-//! with reversed sign. Bundles of different origin may count a channel with opposite signs.
+//! Channels with reversed sign, and datasets with the reversal applied: bundles of different origin
+//! may count a channel with opposite signs.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -57,13 +57,15 @@ pub type Signs = BTreeMap<Channel, SignRole>;
 
 /// A channel with reversed sign, as stored in files.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct TurnedChannel {
+pub struct ReversedChannel {
     pub channel: String,
     pub side: ChannelSide,
-    pub of: SignRole,
+    /// The models in which the sign is reversed.
+    #[serde(rename = "of")]
+    pub role: SignRole,
 }
 
-impl TurnedChannel {
+impl ReversedChannel {
     /// Returns the channel in a dataset; `None` where it does not exist.
     pub fn find(&self, dataset: &Dataset) -> Option<Channel> {
         let channels = match self.side {
@@ -82,43 +84,48 @@ impl TurnedChannel {
 
 /// Returns the dataset with these channels' signs reversed: rows of C and D for an output, columns
 /// of B and D for an input; for measured responses, all responses of the channel.
-pub(crate) fn turned(dataset: &Arc<Dataset>, signs: &Signs) -> Result<Arc<Dataset>, EditRefusal> {
-    let mut turned = Arc::clone(dataset);
+pub(crate) fn with_reversed_signs(
+    dataset: &Arc<Dataset>,
+    signs: &Signs,
+) -> Result<Arc<Dataset>, EditRefusal> {
+    let mut reversed = Arc::clone(dataset);
     if signs.is_empty() {
-        return Ok(turned);
+        return Ok(reversed);
     }
     for condition in dataset.conditions() {
         let refused = |why: String| EditRefusal::Models {
             condition: condition.id(),
             why,
         };
-        let condition = turned_condition(condition, signs).map_err(refused)?;
-        let dataset = turned.with_condition(condition);
-        turned = Arc::new(dataset.map_err(|error| refused(error.to_string()))?);
+        let condition = reversed_condition(condition, signs).map_err(refused)?;
+        let dataset = reversed.with_condition(condition);
+        reversed = Arc::new(dataset.map_err(|error| refused(error.to_string()))?);
     }
-    Ok(turned)
+    Ok(reversed)
 }
 
-fn turned_condition(condition: &Condition, signs: &Signs) -> Result<Condition, String> {
-    let physics = turned_models(condition, BundleKind::Physics, signs)?;
-    let identified = turned_models(condition, BundleKind::Identified, signs)?;
+/// Reverses the signs in both bundles, and in the *moved* models: physics models linearised again
+/// with a changed physics parameter.
+fn reversed_condition(condition: &Condition, signs: &Signs) -> Result<Condition, String> {
+    let physics = reversed_models(condition, BundleKind::Physics, signs)?;
+    let identified = reversed_models(condition, BundleKind::Identified, signs)?;
     let mut moved = condition.moved_models().to_vec();
     let physics_signs = BundleSigns {
         signs,
         kind: BundleKind::Physics,
     };
     for moved in &mut moved {
-        moved.model.dynamics = physics_signs.turned(&moved.model.dynamics)?;
+        moved.model.dynamics = physics_signs.applied_to(&moved.model.dynamics)?;
     }
     let state = condition.flight_state().clone();
-    let turned = Condition::new(state, physics, identified).map_err(|error| error.to_string())?;
-    turned
+    let reversed = Condition::new(state, physics, identified).map_err(|error| error.to_string())?;
+    reversed
         .with_records(condition.records().to_vec())
-        .and_then(|turned| turned.with_moved_models(moved))
+        .and_then(|reversed| reversed.with_moved_models(moved))
         .map_err(|error| error.to_string())
 }
 
-fn turned_models(
+fn reversed_models(
     condition: &Condition,
     kind: BundleKind,
     signs: &Signs,
@@ -127,7 +134,7 @@ fn turned_models(
     let mut models = Vec::new();
     for model in condition.bundle(kind) {
         models.push(Model {
-            dynamics: signs.turned(&model.dynamics)?,
+            dynamics: signs.applied_to(&model.dynamics)?,
             ..model.clone()
         });
     }
@@ -155,24 +162,24 @@ impl BundleSigns<'_> {
         self.sign(output) * self.sign(input)
     }
 
-    fn turned(&self, dynamics: &Dynamics) -> Result<Dynamics, String> {
+    fn applied_to(&self, dynamics: &Dynamics) -> Result<Dynamics, String> {
         match dynamics {
             Dynamics::StateSpace(model) => {
-                let turned = self.turned_state_space(model);
-                turned
+                let reversed = self.reversed_state_space(model);
+                reversed
                     .map(Dynamics::StateSpace)
                     .map_err(|error| error.to_string())
             }
             Dynamics::Measured(response) => {
-                let turned = self.turned_response(response);
-                turned
+                let reversed = self.reversed_response(response);
+                reversed
                     .map(Dynamics::Measured)
                     .map_err(|error| error.to_string())
             }
         }
     }
 
-    fn turned_state_space(&self, model: &StateSpace) -> Result<StateSpace, StateSpaceError> {
+    fn reversed_state_space(&self, model: &StateSpace) -> Result<StateSpace, StateSpaceError> {
         let mut b = model.b().clone();
         let mut c = model.c().clone();
         let mut d = model.d().clone();
@@ -189,7 +196,7 @@ impl BundleSigns<'_> {
         StateSpace::new(model.a().clone(), b, c, d)?.timed(model.timing().clone())
     }
 
-    fn turned_response(
+    fn reversed_response(
         &self,
         response: &MeasuredResponse,
     ) -> Result<MeasuredResponse, MeasuredResponseError> {
@@ -202,16 +209,16 @@ impl BundleSigns<'_> {
             let sign = self.pair_sign(pair);
             values.iter().map(|value| sign * value.im).collect()
         });
-        let turned = MeasuredResponse::new(
+        let reversed = MeasuredResponse::new(
             response.omega().to_vec(),
             &re,
             &im,
             response.coherence().cloned(),
         )?;
-        let turned = turned.with_estimate(response.estimate())?;
+        let reversed = reversed.with_estimate(response.estimate())?;
         match response.valid_bands() {
-            Some(bands) => turned.with_valid_bands(bands.clone()),
-            None => Ok(turned),
+            Some(bands) => reversed.with_valid_bands(bands.clone()),
+            None => Ok(reversed),
         }
     }
 }

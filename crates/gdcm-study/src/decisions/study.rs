@@ -32,9 +32,9 @@ pub struct Study {
     /// Choices in the last export. No result depends on them.
     pub exports: Arc<ExportChoices>,
     /// Models adopted instead of those in the file; `dataset` contains them.
-    pub(crate) taken: BTreeMap<ConditionId, Arc<AdoptedModels>>,
+    pub(crate) adopted: BTreeMap<ConditionId, Arc<AdoptedModels>>,
     /// The dataset as in its file; `None` if no models are adopted and no signs reversed.
-    pub(crate) file: Option<Arc<Dataset>>,
+    pub(crate) file_dataset: Option<Arc<Dataset>>,
 }
 
 impl PartialEq for Study {
@@ -64,7 +64,7 @@ impl Study {
     /// Returns the datasets that the study keeps in memory: the one in use, and the one as in its
     /// file.
     pub(crate) fn datasets(&self) -> impl Iterator<Item = &Arc<Dataset>> {
-        std::iter::once(&self.dataset).chain(&self.file)
+        std::iter::once(&self.dataset).chain(&self.file_dataset)
     }
 
     /// Creates a study of `dataset` without any decision: default settings, no rejections.
@@ -82,8 +82,8 @@ impl Study {
             signs: Signs::new(),
             requirements: Arc::default(),
             exports: Arc::default(),
-            taken: BTreeMap::new(),
-            file: None,
+            adopted: BTreeMap::new(),
+            file_dataset: None,
         }
     }
 

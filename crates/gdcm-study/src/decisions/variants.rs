@@ -34,7 +34,7 @@ impl Study {
     }
 
     /// Stores the present decisions under a new name.
-    pub(crate) fn keep_variant(&mut self, name: &str) -> Result<(), EditRefusal> {
+    pub(crate) fn store_variant(&mut self, name: &str) -> Result<(), EditRefusal> {
         let name = self.new_variant_name(name)?;
         let settings = self.settings.clone();
         let choices = self.choices.clone();
@@ -47,7 +47,7 @@ impl Study {
     }
 
     /// Replaces the present decisions with a variant's decisions.
-    pub(crate) fn take_variant(&mut self, name: &str) -> Result<(), EditRefusal> {
+    pub(crate) fn apply_variant(&mut self, name: &str) -> Result<(), EditRefusal> {
         let index = self.variant_index(name)?;
         let Variant {
             settings, choices, ..

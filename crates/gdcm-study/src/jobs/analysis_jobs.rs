@@ -29,6 +29,10 @@ use crate::stages::engine::Engine;
 use crate::stages::optima::solved;
 use crate::stages::physics_assessment::with_physics;
 
+/// Maximum work for the proof behind a toggle's cost, in evaluations of a term in the objective:
+/// about 0.1 s on a core. A limited proof is enough: the costs serve as a hint, not as a result.
+const TOGGLE_PROOF_WORK: u64 = 4_000_000;
+
 /// Job that completes the optimality proof for eq. (7) in a condition, if the interactive
 /// analysis's budget was too small.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,12 +60,12 @@ impl TogglesJob {
     /// Returns whether the costs apply to this result. They depend on its two problems and on the
     /// optimal objectives, to which each changed problem is compared.
     pub fn is_of(&self, condition: &ConditionAnalysis) -> bool {
-        let a = &self.condition;
-        let b = condition;
-        let same_problems = a.gain_problem == b.gain_problem && a.delay_problem == b.delay_problem;
-        same_problems
-            && a.gains.objective == b.gains.objective
-            && a.delays.objective == b.delays.objective
+        let own = &self.condition;
+        let other = condition;
+        own.gain_problem == other.gain_problem
+            && own.delay_problem == other.delay_problem
+            && own.gains.objective == other.gains.objective
+            && own.delays.objective == other.delays.objective
     }
 }
 
@@ -77,9 +81,8 @@ impl Job for TogglesJob {
     type Output = Option<Toggles>;
 
     fn run(&self, (): &mut (), progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
-        // A limited proof is enough: the table serves as a hint, not as a result.
         let budget = ProofBudget {
-            work: 4_000_000,
+            work: TOGGLE_PROOF_WORK,
             ..ProofBudget::default()
         };
         let ConditionAnalysis {
@@ -153,7 +156,8 @@ pub struct UncertaintyJob {
 }
 
 impl Job for UncertaintyJob {
-    /// An engine that keeps responses and swaps from one analysis to the next.
+    /// An engine that keeps responses and model swaps, from which the error bars follow, from one
+    /// analysis to the next.
     type Tools = Engine;
     type Output = Arc<Uncertainty>;
 

@@ -334,7 +334,7 @@ fn an_entry_is_within_its_bar_where_it_cannot_be_told_from_no_coupling() {
         .iter()
         .filter_map(|entry| Some((entry, entry.half_width?)))
     {
-        assert!(entry.is_within_bar == (entry.value.abs() <= half_width) || entry.value == 1.0);
+        assert!(entry.may_be_zero == (entry.value.abs() <= half_width) || entry.value == 1.0);
         assert!(
             entry.deviation.unwrap() <= half_width,
             "Student's quantile of 90 % is over 1"
@@ -344,14 +344,14 @@ fn an_entry_is_within_its_bar_where_it_cannot_be_told_from_no_coupling() {
         mixing
             .diagonal()
             .iter()
-            .all(|entry| entry.value == 1.0 && !entry.is_within_bar)
+            .all(|entry| entry.value == 1.0 && !entry.may_be_zero)
     );
-    assert!(ASSESSED.feedback().iter().any(|entry| entry.is_within_bar));
+    assert!(ASSESSED.feedback().iter().any(|entry| entry.may_be_zero));
 }
 
 #[test]
 fn conditions_that_want_leads_are_counted_where_none_are_given() {
-    assert_eq!(ASSESSED.want_leads, 0, "leads are given");
+    assert_eq!(ASSESSED.unused_lead_offers, 0, "leads are given");
     let mut study = EXAMPLE.analysis.study.clone();
     study
         .apply(&setting_table::PHASE.to(PhaseCorrection::Delay))
@@ -361,5 +361,5 @@ fn conditions_that_want_leads_are_counted_where_none_are_given() {
         .unwrap()
         .unwrap()
         .unwrap();
-    assert!(assessed.want_leads > 0);
+    assert!(assessed.unused_lead_offers > 0);
 }

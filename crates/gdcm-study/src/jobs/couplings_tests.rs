@@ -628,9 +628,8 @@ fn error_bars_are_of_physics_models_with_the_couplings_of_the_representatives() 
     };
     let with = bar(&mut engine, &COUPLED.1);
     let without = bar(&mut engine, &EXAMPLE.analysis);
-    let gain = |analysis: &Analysis, pair: Pair| {
-        analysis.condition(id).unwrap().wanted_gain(pair).unwrap()
-    };
+    let gain =
+        |analysis: &Analysis, pair: Pair| analysis.condition(id).unwrap().delta_gain(pair).unwrap();
     assert!((with.value - gain(&COUPLED.1, pair).ln()).abs() < 1e-12);
     assert!((without.value - gain(&EXAMPLE.analysis, pair).ln()).abs() < 1e-12);
     assert_ne!(with, without);

@@ -71,6 +71,7 @@ impl IdentificationRequest {
             let Some(flight) = record.used_flight() else {
                 continue;
             };
+            // Guessed from the record's name, or set by the user.
             if record.guess.held_out {
                 held_out.push(flights.len());
             }
@@ -187,7 +188,7 @@ impl Job for IdentifyJob {
         progress: &dyn Progress,
     ) -> Result<Self::Output, Cancelled> {
         let begin = Instant::now();
-        let found = self.request.identify(
+        let identified = self.request.identify(
             executor.as_ref(),
             &NewsProgress {
                 progress,
@@ -195,21 +196,21 @@ impl Job for IdentifyJob {
             },
         );
         locked(&self.news).duration_s = Some(begin.elapsed().as_secs_f64());
-        if let Ok(found) = &found {
-            let plan = next_flight(found, executor.as_ref());
+        if let Ok(identified) = &identified {
+            let plan = next_flight(identified, executor.as_ref());
             locked(&self.news).next_flight = plan.map(Arc::new);
         }
-        match found {
+        match identified {
             Err(IdentificationError::Stopped(cancelled)) => Err(cancelled),
-            found => Ok(found.map(Arc::new)),
+            identified => Ok(identified.map(Arc::new)),
         }
     }
 }
 
 /// Predicts the intervals after further sweeps of each input ([`FlightPlanner::standard_plan`]);
 /// `None` if they cannot be computed.
-fn next_flight(found: &Identification, executor: &dyn Executor) -> Option<FlightPlan> {
-    let information = found.information.as_ref()?;
+fn next_flight(identification: &Identification, executor: &dyn Executor) -> Option<FlightPlan> {
+    let information = identification.information.as_ref()?;
     FlightPlanner::new(information, executor)?.standard_plan()
 }
 
@@ -251,13 +252,13 @@ impl Job for SimulationJob {
         if progress.cancelled() {
             return Err(Cancelled);
         }
-        let found = segments
+        let validation = segments
             .map_err(SimulationFailure::NotPrepared)
             .and_then(|segments| {
                 let settings = ValidationSettings::unfiltered();
                 validate(&self.model, &segments, &settings, executor.as_ref())
                     .map_err(SimulationFailure::NotSimulated)
             });
-        Ok(found.map(Arc::new))
+        Ok(validation.map(Arc::new))
     }
 }

@@ -1,5 +1,7 @@
 //! Long computations that run in parallel to the interactive analysis.
 
+pub mod across_job;
+pub mod across_role;
 pub mod analysis_jobs;
 #[cfg(test)]
 mod coupling_costs_tests;

@@ -33,7 +33,7 @@ pub struct RequirementsJob {
     pub uncertainty: Option<Shared<Uncertainty>>,
     /// Requirement settings, on which the analysis does not depend.
     pub settings: Arc<RequirementSettings>,
-    pub known: IdentifiedPoles,
+    pub identified_poles: IdentifiedPoles,
 }
 
 impl Job for RequirementsJob {
@@ -47,10 +47,10 @@ impl Job for RequirementsJob {
     ) -> Result<Self::Output, Cancelled> {
         let analysis = Analysis {
             uncertainty: self.uncertainty.as_deref().cloned(),
-            ..self.analysis.asked_with(&self.settings)
+            ..self.analysis.with_requirements(&self.settings)
         };
         let execution = Execution::new(executor.as_ref(), progress, analysis.conditions.len());
-        let requirements = requirements_of(&analysis, &self.known, &execution)?;
+        let requirements = requirements_of(&analysis, &self.identified_poles, &execution)?;
         Ok(Arc::new(requirements))
     }
 }
@@ -59,6 +59,7 @@ impl Job for RequirementsJob {
 #[derive(Clone, Debug, PartialEq)]
 pub struct TimeHistoriesJob {
     pub analysis: Shared<Analysis>,
+    /// Flight records, condition by condition.
     pub records: Vec<HistoryRecords>,
     pub tolerances: ToleranceTable,
 }
@@ -106,11 +107,11 @@ impl Job for RecordHistoryJob {
             preparation: &self.preparation,
             tolerances: &self.tolerances,
         };
-        let found = RecordHistory::new(&self.analysis, &compared, executor.as_ref());
+        let history = RecordHistory::new(&self.analysis, &compared, executor.as_ref());
         if progress.cancelled() {
             return Err(Cancelled);
         }
-        Ok(found.map(Arc::new))
+        Ok(history.map(Arc::new))
     }
 }
 
@@ -133,7 +134,7 @@ impl Job for TestAnswersJob {
         executor: &mut Self::Tools,
         progress: &dyn Progress,
     ) -> Result<Self::Output, Cancelled> {
-        let found = TestAnswers::new(
+        let answers = TestAnswers::new(
             &self.analysis,
             self.condition,
             self.input,
@@ -143,6 +144,6 @@ impl Job for TestAnswersJob {
         if progress.cancelled() {
             return Err(Cancelled);
         }
-        Ok(found.map(Arc::new))
+        Ok(answers.map(Arc::new))
     }
 }

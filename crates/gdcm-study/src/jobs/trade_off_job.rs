@@ -138,6 +138,8 @@ impl Job for TradeOffJob {
                 alpha,
                 ..self.problem()
             };
+            // The proof budget of the interactive analysis, whose gains the points are compared
+            // with.
             match solved(&problem, LIVE_PROOF, progress)? {
                 Ok(solution) => {
                     let condition = ConditionAnalysis {

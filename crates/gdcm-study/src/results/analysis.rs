@@ -6,13 +6,12 @@
 //! any, then changed by the *couplings* (M16), if any, and last corrected by gains, delays and
 //! leads. Functions with `file` in their names refer to the models before all of that.
 //!
-//! In names, *held* responses are the constrained ones, *wanted* and *asked* say what the study
-//! requests.
+//! In names, *held* responses are the constrained ones; the *delta* gain and the *delta* delay are
+//! the G and the D to which gains and delays are fitted.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use gdcm_method::correction::problem::ProblemError;
 use gdcm_method::correction::{ChannelCorrection, GainBounds, Problem, Solution};
 use gdcm_method::couplings::problem::CouplingError;
 use gdcm_method::fidelity::Discontinuity;
@@ -21,6 +20,8 @@ use gdcm_method::fidelity::representative::Representative;
 use gdcm_method::schedule::{CostChange, Schedule, ScheduleError};
 use gdcm_method::uncertainty::Scalar;
 use gdcm_model::dataset::{BundleKind, Condition, ConditionId, Dataset, Model, Pair, PairTable};
+
+pub use super::condition_failure::{ConditionFailure, NoResult, NotAssessed};
 
 use super::applied_physics::{AppliedPhysics, MovedCondition};
 use super::caution::Caution;
@@ -42,27 +43,6 @@ pub(crate) type Outcomes = BTreeMap<ConditionId, Result<ConditionAnalysis, Condi
 /// The nominal model's J by response, before and after the scheduled correction (M12), or why the
 /// condition is left out.
 pub type Assessed = Result<PairTable<Option<CostChange>>, NotAssessed>;
-
-/// Why an assessment leaves a condition out.
-#[derive(Clone, Debug, PartialEq)]
-pub enum NotAssessed {
-    NotAnalysed,
-    NominalRejected,
-    NoResult(ConditionFailure),
-    NoSchedule(ScheduleError),
-}
-
-impl NotAssessed {
-    /// Returns the stable code, for programs and tests.
-    pub fn code(&self) -> &'static str {
-        match self {
-            Self::NotAnalysed => "not-analysed",
-            Self::NominalRejected => "nominal-rejected",
-            Self::NoResult(failure) => failure.code(),
-            Self::NoSchedule(_) => "no-schedule",
-        }
-    }
-}
 
 /// Complete study result: conditions, couplings, schedule, assessment and uncertainty.
 #[derive(Clone, Debug, PartialEq)]
@@ -111,7 +91,7 @@ impl Analysis {
     }
 
     /// Returns the same analysis with other requirement settings.
-    pub fn asked_with(&self, settings: &Arc<RequirementSettings>) -> Self {
+    pub fn with_requirements(&self, settings: &Arc<RequirementSettings>) -> Self {
         let mut analysis = self.clone();
         analysis.study.requirements = Arc::clone(settings);
         analysis
@@ -189,8 +169,8 @@ pub struct ConditionAnalysis {
     pub delays: Arc<Solution>,
     /// Difference that remains after the leads, where leads are requested (M15.5).
     pub compensated: Option<Arc<LeadCompensated>>,
-    /// Benefit of leads, where all constrained responses need lead and leads are not requested;
-    /// `None` where J would not fall by more than a tenth.
+    /// Benefit of leads, offered where all constrained responses need lead and leads are not
+    /// requested; `None` where J would not fall by more than a tenth.
     pub offer: Option<LeadOffer>,
     /// Gains and delays as one correction.
     pub correction: ChannelCorrection,
@@ -238,25 +218,25 @@ impl ConditionAnalysis {
     }
 
     /// Returns the G used in the gain problem: G after the leads, where there are any.
-    pub fn wanted_gain(&self, pair: Pair) -> Option<f64> {
+    pub fn delta_gain(&self, pair: Pair) -> Option<f64> {
         self.gain_problem.delta[pair]
     }
 
     /// Returns the D used in the delay problem \[s\], by eq. (9) or M15.2.
-    pub fn wanted_delay_s(&self, pair: Pair) -> Option<f64> {
+    pub fn delta_delay_s(&self, pair: Pair) -> Option<f64> {
         self.delay_problem.delta[pair]
     }
 
     /// Returns whether the delays are fitted to D by M15.2, as leads always are, instead of eq.
     /// (9); `false` if both definitions give the same D in every response.
-    pub fn asks_band_delays(&self) -> bool {
-        let asked = &self.delay_problem.delta;
+    pub fn fits_band_delays(&self) -> bool {
+        let fitted = &self.delay_problem.delta;
         let delta = &self.comparison.delta;
-        *asked == delta.band_delay_s && *asked != delta.delay_s
+        *fitted == delta.band_delay_s && *fitted != delta.delay_s
     }
 
-    /// Returns the key of the error bar (M13) on [`Self::wanted_delay_s`].
-    pub fn wanted_delay(&self, pair: Pair) -> Scalar {
+    /// Returns the scalar by which the error bar (M13) of [`Self::delta_delay_s`] is found.
+    pub fn delta_delay_scalar(&self, pair: Pair) -> Scalar {
         if self.delay_problem.delta[pair] == self.comparison.delta.delay_s[pair] {
             Scalar::Delay(pair)
         } else {
@@ -356,68 +336,5 @@ impl ConditionAnalysis {
             })
             .collect();
         Some(fit.pair_ratios(&self.bundle_metrics.physics, &bundle, model))
-    }
-}
-
-/// Why an analysis contains no result for a condition.
-#[derive(Clone, Debug, PartialEq)]
-pub enum NoResult {
-    NotAnalysed,
-    Failed(ConditionFailure),
-}
-
-impl NoResult {
-    /// Returns the stable code, for programs and tests.
-    pub fn code(&self) -> &'static str {
-        match self {
-            Self::NotAnalysed => "not-analysed",
-            Self::Failed(failure) => failure.code(),
-        }
-    }
-}
-
-/// Why a condition has no result.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum ConditionFailure {
-    #[error(
-        "no identified models yet, so there is no reference to compare the physics models with; \
-         identify them from the condition's flight records (gdcm identify RECORDS --into DATASET, \
-         or Identify from records in the window), or add identified models"
-    )]
-    NoReference,
-    /// The two representatives have no response in common that is defined over the whole band.
-    #[error(
-        "no response of \"{physics}\" can be compared with \"{identified}\" over the whole band: \
-        each is zero, not finite or outside the range of computable gains at some frequency; \
-        choose another representative, or another band"
-    )]
-    NothingToCompare {
-        physics: String,
-        identified: String,
-        /// Cautions about the model responses, which explain the failure.
-        cautions: Vec<Caution>,
-    },
-    /// Every kept model is set aside (M5b).
-    #[error(
-        "no {bundle} model is left to compare: each kept model lacks a compared response that \
-        another model of the bundle has; restore a model that has them all, or narrow the band"
-    )]
-    AllSetAside { bundle: BundleKind },
-    #[error("the gains could not be computed: {0}")]
-    Gains(ProblemError),
-    #[error("the delays could not be computed: {0}")]
-    Delays(ProblemError),
-}
-
-impl ConditionFailure {
-    /// Returns the reason's stable code, for programs and tests.
-    pub fn code(&self) -> &'static str {
-        match self {
-            Self::NoReference => "no-reference",
-            Self::NothingToCompare { .. } => "nothing-to-compare",
-            Self::AllSetAside { .. } => "all-set-aside",
-            Self::Gains(_) => "gains-not-computed",
-            Self::Delays(_) => "delays-not-computed",
-        }
     }
 }

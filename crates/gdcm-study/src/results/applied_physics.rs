@@ -7,8 +7,9 @@
 //! L_k, Q_k   linear and quadratic increments of the matrix, from the runs of parameter k
 //! ```
 //!
-//! A *run* is a physics model linearised again with one parameter moved. A *plausible* standard
-//! deviation says how far the parameter may reasonably be from its value in the physics model.
+//! A *run* is a physics model linearised again with one parameter moved; a *rerun* has all applied
+//! changes at once and checks the prediction from the runs (M18.6). A *plausible* standard deviation
+//! says how far the parameter may reasonably be from its value in the physics model.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -33,7 +34,7 @@ pub struct AppliedPhysics {
     pub refit: Option<Arc<PhysicsDiagnosis>>,
     /// The moved parameters, in dataset order; empty if none is moved.
     pub values: Vec<AppliedValue>,
-    /// Parameters with a value set by hand that the dataset lacks, by name.
+    /// Parameters with a value set by hand that the dataset does not have, by name.
     pub unknown: Vec<String>,
     /// Outcome for each condition's physics models; empty if no parameter is moved.
     pub conditions: BTreeMap<ConditionId, MovedModels>,

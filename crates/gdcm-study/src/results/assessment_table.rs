@@ -2,6 +2,8 @@
 //! (M12, Figures 8 to 19).
 //!
 //! J is the cost of a response's mismatch to the identified representative, smaller is better (M4).
+//! The *representative* of the physics or identified models, its *bundle*, is the model closest to
+//! the others, or the engineer's choice (M5).
 //! The schedule gives the correction as a function of airspeed (M11). The figures are those of the
 //! paper that the crate `gdcm-method` cites.
 
@@ -245,7 +247,7 @@ pub fn assessed(
         .correction
         .correction(analysis, result)
         .map_err(NotAssessed::NoSchedule)?;
-    let (model, models) = if is_nominal {
+    let (model, mismatches) = if is_nominal {
         (nominal.as_str(), &result.comparison.nominal)
     } else {
         (
@@ -253,11 +255,11 @@ pub fn assessed(
             &result.comparison.representative,
         )
     };
-    let changes = changes(analysis, models, &correction, choice.average);
+    let changes = changes(analysis, mismatches, &correction, choice.average);
     let missing = changes
         .iter()
         .filter(|(_, change)| change.is_none())
-        .map(|(pair, _)| (pair, missing_cost(result, models, pair)))
+        .map(|(pair, _)| (pair, missing_cost(result, mismatches, pair)))
         .collect();
     Ok(AssessedCondition {
         condition: id,
@@ -271,19 +273,19 @@ pub fn assessed(
 /// Computes a model's J before and after a correction, response by response.
 fn changes(
     analysis: &Analysis,
-    models: &ModelMismatch,
+    mismatches: &ModelMismatch,
     correction: &ChannelCorrection,
     average: CostAverage,
 ) -> PairTable<Option<CostChange>> {
     let omega = &analysis.omega;
     // J before the correction is stored only for the average chosen in the study.
     let is_stored = average == analysis.study.settings.cost_average;
-    let corrected = corrected_cost(&models.mismatch, correction, omega, average);
+    let corrected = corrected_cost(&mismatches.mismatch, correction, omega, average);
     corrected.map(|pair, corrected| {
         let uncorrected = if is_stored {
-            models.cost[pair]?
+            mismatches.cost[pair]?
         } else {
-            let mismatch = models.mismatch[pair].as_ref()?;
+            let mismatch = mismatches.mismatch[pair].as_ref()?;
             mismatch.cost(omega, GainDelay::NONE, average)
         };
         Some(CostChange {
@@ -295,8 +297,8 @@ fn changes(
 
 /// Returns why a response has no J: with a mismatch, the correction's net gain; without one, why
 /// the representatives cannot be compared; else the nominal model's response.
-fn missing_cost(result: &ConditionAnalysis, models: &ModelMismatch, pair: Pair) -> MissingCost {
-    if models.mismatch[pair].is_some() {
+fn missing_cost(result: &ConditionAnalysis, mismatches: &ModelMismatch, pair: Pair) -> MissingCost {
+    if mismatches.mismatch[pair].is_some() {
         return MissingCost::NetGainNotPositive;
     }
     match result.comparison.undefined[pair] {

@@ -1,6 +1,8 @@
 //! Cautions about results that are nevertheless available, and the typed reasons in them: why a
 //! response has no G and D ([`Undefined`]), why it is not finite ([`NotFinite`]), and gains out of
 //! range ([`GainOutOfRange`]). G and D are the gain and the delay that would match a response (M6).
+//! A *bundle* contains a condition's physics models, or its identified models; its *representative*
+//! is the model closest to the others, or the engineer's choice (M5).
 
 use std::fmt;
 

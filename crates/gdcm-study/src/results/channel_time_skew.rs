@@ -9,14 +9,15 @@
 //! 0  exit without a finding: no frequencies in the band, or not logarithmically spaced
 //! 1  each response that is coherent over half the band:   phi = arg(measured / physics), unwrapped
 //!       d = -sum W omega phi / sum W omega^2,   W = 1 / (var phi + (3 deg)^2)
-//! 2  each output (a row of responses) and input (a column) with two or more such responses of its
-//!    own, which are more than half of them, and two or more others:
+//! 2  each output and each input: its own responses are a row or a column of the response matrix;
+//!    skip it unless two or more of them, and more than half, are coherent, and two or more others:
 //!       common = median d of all other responses,   s = 1.48 median |d - common| over them
 //!       delay = median d of its own responses - common
 //! 3  late where |delay| > t and |d - common - delay| <= t for each own response, where
 //!    t = max(5 ms, 2.5 * s), and the delay explains four fifths of sum W (phi + omega common)^2
-//! 4  of the late channels that explain at least half as much as the best: the smallest |common|.
-//!    Of an input the delay is reversed: responses to an input that is logged late appear early
+//! 4  among the late channels that explain at least half as much as the best: the one with the
+//!    smallest |common|, since a late channel is the same as all others early by a common delay.
+//!    For an input the delay is reversed: responses to an input that is logged late appear early
 //! ```
 //!
 //! `common`, the delay that all channels share, cannot be assigned to a channel; it is reported
@@ -33,17 +34,21 @@ use gdcm_sysid::spectra::response_estimate::EstimatePoint;
 
 /// Minimum share of the band's frequencies at which a response must be coherent.
 const LEAST_SHOWN: f64 = 0.5;
-/// Standard deviation assumed for a physics model's phase \[rad\].
+/// Standard deviation assumed for a physics model's phase \[rad\]; it limits the weight of a
+/// frequency that is measured very precisely.
 const PHYSICS_SD: f64 = 3.0 * std::f64::consts::PI / 180.0;
 /// Minimum delay that is reported \[s\].
 const LEAST_S: f64 = 5e-3;
-/// Minimum significant delay, as a multiple of the scatter among the other responses.
+/// Minimum significant delay, as a multiple of the scatter among the other responses: a compromise,
+/// since a smaller multiple names channels by chance, and a larger one misses small delays.
 const STANDS_OUT: f64 = 2.5;
 /// Ratio of standard deviation to median absolute deviation, for a normal distribution.
 const SD_OVER_MEDIAN: f64 = 1.4826;
-/// Maximum share of the squared phase that a delay may leave unexplained.
+/// Maximum share of the squared phase that a delay may leave unexplained: a physics model that is
+/// wrong in another way leaves more.
 const MOST_LEFT: f64 = 0.2;
-/// Minimum squared phase that a suspect explains, relative to the largest explained by any suspect.
+/// Minimum squared phase that a suspect explains, relative to the largest explained by any suspect;
+/// among those above it the common delay decides (step 4).
 const LEAST_OF_BEST: f64 = 0.5;
 
 /// A channel that appears to be logged late, or early, in all records.
@@ -239,24 +244,25 @@ impl Suspect {
         let common_s = median_of(others.iter().map(|lag| lag.delay_s));
         let deviations_s = others.iter().map(|lag| (lag.delay_s - common_s).abs());
         let scatter_s = SD_OVER_MEDIAN * median_of(deviations_s);
-        let late_s = median_of(own.iter().map(|lag| lag.delay_s)) - common_s;
+        let own_delay_s = median_of(own.iter().map(|lag| lag.delay_s)) - common_s;
         let tolerance_s = LEAST_S.max(STANDS_OUT * scatter_s);
         let agrees = own
             .iter()
-            .all(|lag| (lag.delay_s - common_s - late_s).abs() <= tolerance_s);
+            .all(|lag| (lag.delay_s - common_s - own_delay_s).abs() <= tolerance_s);
         let before: f64 = own.iter().map(|lag| lag.squared_phase(common_s)).sum();
         let after: f64 = own
             .iter()
-            .map(|lag| lag.squared_phase(common_s + late_s))
+            .map(|lag| lag.squared_phase(common_s + own_delay_s))
             .sum();
-        let is_significant = late_s.abs() > tolerance_s && agrees && after <= MOST_LEFT * before;
+        let is_significant =
+            own_delay_s.abs() > tolerance_s && agrees && after <= MOST_LEFT * before;
         if !is_significant {
             return None;
         }
         // If an input is logged late, the responses to it appear early.
         let delay_s = match role {
-            ChannelSide::Output => late_s,
-            ChannelSide::Input => -late_s,
+            ChannelSide::Output => own_delay_s,
+            ChannelSide::Input => -own_delay_s,
         };
         Some(Self {
             channel: ChannelTimeSkew {

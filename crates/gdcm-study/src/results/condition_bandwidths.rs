@@ -16,8 +16,7 @@
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-use gdcm_method::correction::channel_leads::ChannelLeads;
-use gdcm_method::correction::{Channel, ChannelCorrection, Pade};
+use gdcm_method::correction::Pade;
 use gdcm_method::requirements::AttitudeOutput;
 use gdcm_method::requirements::attitude_response::{
     AttitudeResponse, AttitudeResponseError, ResponseAt, search_frequencies,
@@ -26,13 +25,11 @@ use gdcm_method::requirements::bandwidth::{
     AboveBand, Bandwidth, BandwidthSettings, PairBand, substitution_bar,
 };
 use gdcm_method::requirements::sampled_response::SampledResponse;
-use gdcm_method::uncertainty::Scalar;
-use gdcm_method::uncertainty::scalar::Figures;
 use gdcm_model::dataset::model::ModelBands;
 use gdcm_model::dataset::{Band, BundleKind, Dynamics, Pair};
-use gdcm_model::response::GainDelay;
 
 use super::model_swap::ModelSwap;
+use super::pair_correction::PairCorrection;
 use super::requested_condition::RequestedCondition;
 use super::required_bandwidth::{
     BandwidthFinding, METRICS, MetricValues, NoBandwidth, metric_values, metrics,
@@ -55,17 +52,17 @@ pub(crate) fn bandwidth_findings(requested: &RequestedCondition<'_>) -> Vec<Band
 /// A model prepared for evaluating its responses.
 struct EvaluatedModel<'a> {
     dynamics: Cow<'a, Dynamics>,
-    /// The standard deviations that the model contains, if any.
-    bands: Option<&'a ModelBands>,
+    /// Standard deviations of the response over frequency, if the model contains them.
+    deviations: Option<&'a ModelBands>,
     sampled: SampledResponse,
 }
 
 impl<'a> EvaluatedModel<'a> {
-    fn new(dynamics: Cow<'a, Dynamics>, bands: Option<&'a ModelBands>, band: Band) -> Self {
+    fn new(dynamics: Cow<'a, Dynamics>, deviations: Option<&'a ModelBands>, band: Band) -> Self {
         let sampled = SampledResponse::new(&dynamics, band);
         Self {
             dynamics,
-            bands,
+            deviations,
             sampled,
         }
     }
@@ -77,50 +74,6 @@ enum Evaluation {
     Exact,
     /// By interpolation, for models that only contribute to a metric's scatter.
     Interpolated,
-}
-
-/// A correction's effect on a response.
-#[derive(Clone, Copy)]
-struct PairCorrection {
-    multiplier: GainDelay,
-    /// Whether a lead filter is included; the corrected response then does not represent the
-    /// aircraft above the band.
-    has_leads: bool,
-}
-
-impl PairCorrection {
-    const NONE: Self = Self {
-        multiplier: GainDelay::NONE,
-        has_leads: false,
-    };
-
-    /// Returns a correction's effect on a response; `None` where the net gain is not positive.
-    fn from_correction(correction: &ChannelCorrection, pair: Pair) -> Option<Self> {
-        let has_leads = Channel::of_pair(pair)
-            .into_iter()
-            .any(|channel| correction.lead(channel).is_some());
-        Some(Self {
-            multiplier: correction.on(pair)?,
-            has_leads,
-        })
-    }
-
-    /// Returns the correction's effect after a swap; `None` where a gain or delay is missing.
-    fn from_figures(figures: &Figures, pair: Pair, leads: Option<&ChannelLeads>) -> Option<Self> {
-        let gain = figures[Scalar::NetGain(pair)]?.exp();
-        let [output, input] = Channel::of_pair(pair);
-        let taus_s = [
-            figures[Scalar::ChannelDelay(output)]?,
-            figures[Scalar::ChannelDelay(input)]?,
-        ];
-        let filters = taus_s.map(|tau_s| leads.and_then(|leads| leads.design.filter(tau_s)));
-        let delay_s = taus_s.iter().map(|tau_s| tau_s.max(0.0)).sum();
-        let has_leads = filters.iter().any(Option::is_some);
-        Some(Self {
-            multiplier: GainDelay::new(gain, delay_s).with_leads(filters),
-            has_leads,
-        })
-    }
 }
 
 /// A response's bandwidth, and its phase \[deg\] at the band's lowest frequency where that
@@ -287,14 +240,15 @@ impl<'a> ConditionBandwidths<'a> {
                 AboveBand::Marked
             },
         };
-        let deviation = model.bands.map(|bands| PairBand { bands, pair });
+        let deviation = model.deviations.map(|bands| PairBand { bands, pair });
         Ok(MeasuredBandwidth {
             bandwidth: Bandwidth::read(&attitude, &settings, deviation),
             reversed_phase_deg: attitude.reversed_phase_deg(),
         })
     }
 
-    /// Adds the metrics' intervals; if there are none although a metric is defined, adds why.
+    /// Adds the intervals of the metrics (bandwidth, the frequencies behind it, and phase delay);
+    /// if there are none although a metric is defined, adds why.
     fn add_intervals(&self, finding: &mut BandwidthFinding, bandwidth: &Bandwidth) {
         let level = self.requested.analysis.study.settings.uncertainty.level;
         let why = match finding.role {
@@ -309,7 +263,7 @@ impl<'a> ConditionBandwidths<'a> {
             RequirementRole::Scheduled => NoBandwidth::ScheduleNotRefitted,
             RequirementRole::Identified => {
                 finding.add_deviation_intervals(bandwidth, level);
-                match (&*self.identified.dynamics, self.identified.bands) {
+                match (&*self.identified.dynamics, self.identified.deviations) {
                     (_, Some(_)) => NoBandwidth::DeviationsTooNarrow,
                     (Dynamics::Measured(_), None) => NoBandwidth::MeasuredWithoutDeviations,
                     (Dynamics::StateSpace(_), None) => NoBandwidth::ModelWithoutDeviations,
@@ -366,7 +320,7 @@ impl<'a> ConditionBandwidths<'a> {
         let correction = match role {
             RequirementRole::Corrected => {
                 let leads = self.requested.result.correction.leads.as_ref();
-                PairCorrection::from_figures(swap.figures.as_deref()?, pair, leads)?
+                PairCorrection::from_scalars(swap.figures.as_deref()?, pair, leads)?
             }
             _ => PairCorrection::NONE,
         };

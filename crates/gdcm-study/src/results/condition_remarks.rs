@@ -1,8 +1,10 @@
 //! Finds the remarks on a condition's result.
 //!
-//! A remark is a typed fact that is displayed with the result: a success, a caution or a failure.
-//! Constrained responses that share channels can form a *loop*, in which each net gain or delay
-//! follows from the others; their targets must then agree.
+//! G and D are the gain and the delay that would match a response (M6), the *targets* of the
+//! correction; J is the cost of the mismatch (M4), and a response is *farther* from flight if the
+//! correction increases its J. A remark is a typed fact that is displayed with the result: a
+//! success, a caution or a failure. Constrained responses that share channels can form a *loop*, in
+//! which each net gain or delay follows from the others; their targets must then agree.
 
 use gdcm_method::schedule::Schedule;
 
@@ -67,7 +69,7 @@ fn sign_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
         .map(Remark::ConventionDoubt)
         .collect();
     for (&channel, &role) in &study.signs {
-        remarks.push(Remark::ChannelTurned { channel, role });
+        remarks.push(Remark::ChannelReversed { channel, role });
     }
     remarks
 }
@@ -120,10 +122,10 @@ fn coherence_remark(result: &ConditionAnalysis) -> Option<Remark> {
         .representative
         .mismatch
         .iter()
-        .filter(|(_, entry)| {
-            entry
+        .filter(|(_, mismatch)| {
+            mismatch
                 .as_ref()
-                .is_some_and(|entry| entry.coherence_weights.is_some())
+                .is_some_and(|mismatch| mismatch.coherence_weights.is_some())
         })
         .count();
     if responses == 0 {

@@ -1,7 +1,7 @@
 //! Remarks on couplings as typed facts (diagnosis, benefit and cost, M16.4), each with a stable
 //! code. The sentences are in the crate `gdcm-words`. Couplings are a mixing of the inputs and a
-//! feedback from outputs to inputs (M16); an entry's *share* is the fraction of the stick's
-//! movement that it adds to an input.
+//! feedback from outputs to inputs (M16); J is the cost of a response's mismatch (M4); an entry's
+//! *share* is the fraction of the stick's movement that it adds to an input.
 
 use nalgebra::Complex;
 

@@ -7,9 +7,10 @@
 //!    (`largest_change_above_band`, `farthest_pole`).
 //! 4. Cautions: poles, loops, and entries that the data do not determine (`coupling_cautions`).
 //!
-//! Couplings are a mixing of the inputs and a feedback from outputs to inputs (M16). The *share* of
-//! a mixing entry is the fraction of one input that another receives; that of a feedback entry is
-//! the largest movement of its input per unit of movement of the stick.
+//! Couplings are a mixing of the inputs and a feedback from outputs to inputs (M16); J is the cost
+//! of a response's mismatch (M4). The *share* of a mixing entry is the fraction of one input that
+//! another receives; that of a feedback entry is the largest movement of its input per unit of
+//! movement of the stick.
 
 use gdcm_method::couplings::coupling_shares::{
     FeedbackShare, cyclic_inputs, feedback_shares, mixing_shares,
@@ -74,7 +75,7 @@ fn diagnosis(assessment: &CouplingsAssessment, dataset: &Dataset) -> Vec<Couplin
     let mixed = mixing_shares(&matrices.normalised_mixing(airspeed_kt), cyclic)
         .into_iter()
         .filter(|share| {
-            !mixing[(share.to, share.from)].is_within_bar && share.share.abs() >= LEAST_SHARE
+            !mixing[(share.to, share.from)].may_be_zero && share.share.abs() >= LEAST_SHARE
         })
         .take(MOST_REPORTED);
     let mut remarks: Vec<CouplingRemark> = mixed.map(CouplingRemark::Mixing).collect();
@@ -82,7 +83,7 @@ fn diagnosis(assessment: &CouplingsAssessment, dataset: &Dataset) -> Vec<Couplin
     let fed = feedback_shares(&assessment.fitted.problem, matrices)
         .into_iter()
         .filter(|share| {
-            !feedback[(share.input, share.output)].is_within_bar && share.share >= LEAST_SHARE
+            !feedback[(share.input, share.output)].may_be_zero && share.share >= LEAST_SHARE
         })
         .take(MOST_REPORTED);
     for share in fed {
@@ -222,9 +223,9 @@ pub fn coupling_cautions(assessment: &CouplingsAssessment) -> Vec<CouplingRemark
     let mut remarks = newly_unstable(assessment);
     remarks.extend(close_to_ringing(assessment));
     let has_feedback = assessment.couplings == CouplingCorrection::MixingAndFeedback;
-    if assessment.want_leads > 0 && has_feedback {
+    if assessment.unused_lead_offers > 0 && has_feedback {
         remarks.push(CouplingRemark::FeedbackAsLead {
-            conditions: assessment.want_leads,
+            conditions: assessment.unused_lead_offers,
         });
     }
     let conditions = assessment.fitted.problem.conditions.len();

@@ -2,7 +2,8 @@
 //! conditions left out, pole shifts, the loop's stability margin, effect above the band (M16.4).
 //!
 //! `M~` is the normalised mixing between the inputs, `K` the feedback from outputs to inputs, `H`
-//! and `H~` the physics model's response without and with them (M16).
+//! and `H~` the physics model's response without and with them (M16). J is the cost of a response's
+//! mismatch to the identified model (M4).
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -28,9 +29,9 @@ pub struct CouplingEntry {
     pub half_width: Option<f64>,
     /// Jackknife standard deviation.
     pub deviation: Option<f64>,
-    /// Whether the entry may be 0 (no coupling): its value is 0, or 0 lies within its error bar;
+    /// Whether the entry may be 0 (no coupling): its value is 0, or its error bar includes 0;
     /// `false` on the diagonal of `M~`, which is 1 by definition.
-    pub is_within_bar: bool,
+    pub may_be_zero: bool,
 }
 
 /// The couplings' effect on a condition.
@@ -113,10 +114,10 @@ pub struct CouplingsAssessment {
     pub conditions: BTreeMap<ConditionId, ConditionCouplings>,
     /// Newly unstable poles in all kept physics models.
     pub unstable: Vec<UnstablePole>,
-    /// Number of conditions with an unused offer of leads
+    /// Number of conditions in which leads are offered but not used
     /// ([`ConditionAnalysis::offer`](super::analysis::ConditionAnalysis::offer)): feedback then
     /// replaces the missing lead.
-    pub want_leads: usize,
+    pub unused_lead_offers: usize,
 }
 
 impl CouplingsAssessment {
@@ -184,13 +185,13 @@ fn entries(
             value,
             half_width: None,
             deviation: None,
-            is_within_bar: value == 0.0 && !is_fixed(row, column),
+            may_be_zero: value == 0.0 && !is_fixed(row, column),
         };
         if let Some(bars) = &bars {
             let half_width = bars.half_widths[(row, column)];
             entry.half_width = Some(half_width);
             entry.deviation = Some(half_width / bars.quantile);
-            entry.is_within_bar |= value.abs() <= half_width && !is_fixed(row, column);
+            entry.may_be_zero |= value.abs() <= half_width && !is_fixed(row, column);
         }
         entry
     })

@@ -6,8 +6,8 @@
 //! 3. Cells: for the corrected and the uncorrected physics model, the value, compared with the
 //!    row's limit; or why it is not determined (`cell`).
 //!
-//! `flown` denotes values of the identified model, the reference. A held-out record is a flight
-//! record that was excluded from the identification.
+//! The identified model is the reference. A held-out record is a flight record that was excluded
+//! from the identification.
 
 use std::collections::BTreeSet;
 
@@ -25,7 +25,7 @@ use super::requirements::Requirements;
 use super::time_histories::TimeHistories;
 use crate::decisions::requirement_settings::{OverviewLimits, RequirementSettings};
 
-/// Modes that always have a row; any other mode has a row only with a tolerance.
+/// Modes that have a row whenever flight shows them; any other mode only with a tolerance.
 const SHOWN_MODES: [ModeName; 3] = [
     ModeName::DutchRoll,
     ModeName::ShortPeriod,
@@ -40,7 +40,7 @@ pub struct GridSource<'a> {
     pub histories: Option<&'a TimeHistories>,
     pub dataset: &'a Dataset,
     pub settings: &'a RequirementSettings,
-    /// `Corrected` or `Scheduled`.
+    /// The corrected model to be judged: `Corrected` or `Scheduled`.
     pub role: RequirementRole,
 }
 
@@ -154,9 +154,9 @@ impl GridSource<'_> {
     /// then others that have a tolerance.
     fn mode_rows(&self) -> Vec<RowSource> {
         let tolerances = self.settings.mode_tolerances.rows();
-        let mut flown: BTreeSet<ModeName> = BTreeSet::new();
+        let mut in_flight: BTreeSet<ModeName> = BTreeSet::new();
         for mode in &self.requirements.modes {
-            flown.extend(mode.name);
+            in_flight.extend(mode.name);
         }
         let mut names: Vec<ModeName> = SHOWN_MODES.to_vec();
         for name in tolerances.iter().flat_map(|row| &row.modes) {
@@ -166,7 +166,7 @@ impl GridSource<'_> {
         }
         let mut rows = Vec::new();
         for name in names {
-            if !flown.contains(&name) {
+            if !in_flight.contains(&name) {
                 continue;
             }
             let tolerance = tolerances.iter().find(|row| row.modes.contains(&name));
@@ -234,10 +234,10 @@ impl GridSource<'_> {
         role: RequirementRole,
     ) -> Result<f64, NotDetermined> {
         let model = self.bandwidth_finding(condition, pair, role)?;
-        let flown = self.bandwidth_finding(condition, pair, RequirementRole::Identified)?;
+        let reference = self.bandwidth_finding(condition, pair, RequirementRole::Identified)?;
         let model_rad_s = known_metric(model, model.omega_bw_rad_s, "omega_bw_rad_s")?;
-        let flown_rad_s = known_metric(flown, flown.omega_bw_rad_s, "omega_bw_rad_s")?;
-        Ok(model_rad_s / flown_rad_s - 1.0)
+        let reference_rad_s = known_metric(reference, reference.omega_bw_rad_s, "omega_bw_rad_s")?;
+        Ok(model_rad_s / reference_rad_s - 1.0)
     }
 
     /// Returns the difference in phase delay from the identified model \[s\].
@@ -248,10 +248,10 @@ impl GridSource<'_> {
         role: RequirementRole,
     ) -> Result<f64, NotDetermined> {
         let model = self.bandwidth_finding(condition, pair, role)?;
-        let flown = self.bandwidth_finding(condition, pair, RequirementRole::Identified)?;
+        let reference = self.bandwidth_finding(condition, pair, RequirementRole::Identified)?;
         let model_s = known_metric(model, model.phase_delay_s, "phase_delay_s")?;
-        let flown_s = known_metric(flown, flown.phase_delay_s, "phase_delay_s")?;
-        Ok(model_s - flown_s)
+        let reference_s = known_metric(reference, reference.phase_delay_s, "phase_delay_s")?;
+        Ok(model_s - reference_s)
     }
 
     /// Compares a model's level with the identified model's: met if they are equal.
@@ -261,7 +261,7 @@ impl GridSource<'_> {
             Err(why) => return RoleCell::absent(why),
         };
         let verdict = match self.level(condition, pair, RequirementRole::Identified) {
-            Ok(flown) if flown == level => CellVerdict::Met,
+            Ok(reference) if reference == level => CellVerdict::Met,
             Ok(_) => CellVerdict::Outside,
             Err(why) => CellVerdict::NotDetermined(why),
         };

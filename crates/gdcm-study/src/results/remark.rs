@@ -23,7 +23,7 @@ pub enum Remark {
     /// A suspected difference in sign or unit between the two bundles.
     ConventionDoubt(ConventionDoubt),
     /// A channel's sign is reversed relative to the file.
-    ChannelTurned { channel: Channel, role: SignRole },
+    ChannelReversed { channel: Channel, role: SignRole },
     /// All `held` constrained gains are matched: exactly if there is no tolerance \[dB\].
     GainsMatched {
         held: usize,
@@ -143,7 +143,7 @@ impl Remark {
     pub fn code(&self) -> &'static str {
         match self {
             Self::ConventionDoubt(_) => "convention-doubt",
-            Self::ChannelTurned { .. } => "channel-turned",
+            Self::ChannelReversed { .. } => "channel-turned",
             Self::GainsMatched { .. } => "gains-matched",
             Self::GainsMissed(_) | Self::GainsRemedy(_) => "gains-missed",
             Self::DelaysMatched { .. } => "delays-matched",
@@ -170,7 +170,7 @@ impl Remark {
     /// Returns whether the remark reports a success, a caution or a failure.
     pub fn kind(&self) -> RemarkKind {
         match self {
-            Self::ChannelTurned { .. }
+            Self::ChannelReversed { .. }
             | Self::GainsMatched { .. }
             | Self::DelaysMatched { .. }
             | Self::LeadsNegligible
@@ -220,7 +220,7 @@ impl Remark {
                     role: Some(SignRole::Identified),
                 })
             }
-            Self::ChannelTurned { channel, .. } => Some(SuggestedSign {
+            Self::ChannelReversed { channel, .. } => Some(SuggestedSign {
                 channel: *channel,
                 role: None,
             }),

@@ -11,7 +11,7 @@
 //!
 //! A pattern only says what is worth trying: parameters with similar effects produce the same
 //! pattern. The cyclic inputs (longitudinal and lateral stick) are the two inputs whose only
-//! on-axis response is a rate; a coupling `is_within_bar` if its error bar includes zero (M16).
+//! on-axis response is a rate; a coupling `may_be_zero` if its error bar includes zero (M16).
 
 use gdcm_method::couplings::coupling_shares::{cyclic_inputs, feedback_shares};
 use gdcm_method::physics::OfferedParameter;
@@ -260,7 +260,7 @@ impl PatternSearch<'_> {
         let mixing = couplings.mixing(couplings.mean_airspeed_kt());
         let [forth, back] = [&mixing[(first, second)], &mixing[(second, first)]];
         let is_notable = forth.value.abs().max(back.value.abs()) >= NOTABLE_SHARE
-            && !(forth.is_within_bar && back.is_within_bar);
+            && !(forth.may_be_zero && back.may_be_zero);
         if is_notable && forth.value * back.value < 0.0 {
             Some(RunPattern::CrossedCyclic {
                 inputs,
@@ -285,8 +285,8 @@ impl PatternSearch<'_> {
                 && cyclic
                     .iter()
                     .any(|&other| other != share.input && on_axis[Pair::new(share.output, other)]);
-            let is_significant = share.share >= NOTABLE_SHARE
-                && !feedback[(share.input, share.output)].is_within_bar;
+            let is_significant =
+                share.share >= NOTABLE_SHARE && !feedback[(share.input, share.output)].may_be_zero;
             if is_crossed && is_significant {
                 return Some(RunPattern::CrossedRate {
                     input: share.input,
@@ -353,7 +353,7 @@ impl PatternSearch<'_> {
             None => None,
             Some(couplings) => {
                 let entry = &couplings.feedback()[(pair.input, pair.output)];
-                if entry.is_within_bar {
+                if entry.may_be_zero {
                     return None;
                 }
                 feedback_shares(&couplings.fitted.problem, couplings.fitted.matrices())

@@ -91,7 +91,7 @@ impl Engine {
             conditions.insert(id, effect.couplings);
             unstable.extend(effect.unstable);
         }
-        let want_leads = without
+        let unused_lead_offers = without
             .conditions
             .values()
             .flatten()
@@ -109,7 +109,7 @@ impl Engine {
             omega: grid.omega().into(),
             conditions,
             unstable,
-            want_leads,
+            unused_lead_offers,
             left_out_fits: left_out.into_iter().map(|left_out| left_out.fit).collect(),
         }))))
     }

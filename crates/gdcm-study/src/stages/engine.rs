@@ -264,7 +264,7 @@ impl Engine {
             execution: &execution,
         };
         let couplings = analysis.fitted_couplings();
-        let swaps = execution.each_mut(analysed, |(id, stages, result)| {
+        let swaps = execution.each_owned(analysed, |(id, stages, result)| {
             Ok((id, stages.swaps(run, result, couplings)?))
         })?;
         Ok(Uncertainty::new(analysis, &swaps))
@@ -429,7 +429,7 @@ fn fit_physics(
     for stages in stages.values_mut() {
         chosen.push(stages);
     }
-    let sources = execution.each_mut(chosen, |stages| stages.physics_source(run))?;
+    let sources = execution.each_owned(chosen, |stages| stages.physics_source(run))?;
     let progress = FitProgress {
         execution,
         steps,
@@ -472,7 +472,7 @@ fn fit_couplings(
             chosen.push(stages);
         }
     }
-    let sources = execution.each_mut(chosen, |stages| stages.coupling_source(run))?;
+    let sources = execution.each_owned(chosen, |stages| stages.coupling_source(run))?;
     let sources: Vec<CouplingSource> = sources.into_iter().flatten().collect();
     let key = CouplingFitKey::new(study, kind, &sources);
     let progress = FitProgress {
@@ -531,7 +531,7 @@ fn analyze_conditions(
         .iter_mut()
         .filter(|(id, _)| !outcomes.contains_key(id))
         .collect();
-    let others = run.execution.each_mut(others, |(id, stages)| {
+    let others = run.execution.each_owned(others, |(id, stages)| {
         Ok((*id, stages.analyze(run, couplings)?))
     })?;
     outcomes.extend(others);

@@ -68,7 +68,7 @@ pub(super) fn net_gain(context: &Context<'_>, pair: Pair) -> Derivation {
         five_digits(result.correction.gain(input)),
         five_digits(value)
     );
-    let delta = result.wanted_gain(pair);
+    let delta = result.delta_gain(pair);
     Derivation {
         title: context.title(&format!("net gain of {}", context.pair(pair))),
         equation: "k_o k_i".to_owned(),
@@ -92,7 +92,7 @@ pub(super) fn net_delay(context: &Context<'_>, pair: Pair) -> Derivation {
         five_digits(s_to_ms(result.correction.delay_s(input))),
         five_digits(value)
     );
-    let delta_ms = result.wanted_delay_s(pair).map(s_to_ms);
+    let delta_ms = result.delta_delay_s(pair).map(s_to_ms);
     Derivation {
         title: context.title(&format!("net delay of {}", context.pair(pair))),
         equation: "τ_o + τ_i".to_owned(),

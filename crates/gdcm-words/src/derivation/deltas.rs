@@ -48,7 +48,7 @@ fn weighted_median_words(mismatch: &Mismatch, values: &[f64]) -> String {
 /// that are not rejected; else the median of the representatives' ratio. `None` if the response has
 /// no delta gain.
 pub(super) fn gain(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
-    let value = context.result.wanted_gain(pair)?;
+    let value = context.result.delta_gain(pair)?;
     let mismatch = context.compensated_mismatch(pair)?;
     let title = context.title(&format!("G of {}", context.pair(pair)));
     if context.result.compensated.is_none()
@@ -98,10 +98,10 @@ fn mean_gain(context: &Context<'_>, title: String, value: f64) -> Derivation {
 /// Derives a response's delta delay `D`: the band delay if the delays are fitted to it, otherwise
 /// the median; `None` if the response has no delta delay.
 pub(super) fn delay(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
-    let value = s_to_ms(context.result.wanted_delay_s(pair)?);
+    let value = s_to_ms(context.result.delta_delay_s(pair)?);
     let mismatch = context.mismatch(pair)?;
     let mut rests_on = context.models_and_frequencies(mismatch);
-    let uses_band_delay = context.result.asks_band_delays();
+    let uses_band_delay = context.result.fits_band_delays();
     let (equation, step, section) = if uses_band_delay {
         (
             "D = Σ W ω Δφ(H_sim, H_ref) / Σ W ω²",

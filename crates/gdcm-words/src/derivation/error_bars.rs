@@ -51,7 +51,9 @@ fn lines_of(analysis: &Analysis, target: &ExplainTarget) -> Option<Vec<String>> 
 fn scalar_of(analysis: &Analysis, target: &ExplainTarget) -> Option<(ConditionId, Scalar)> {
     Some(match target {
         ExplainTarget::DeltaGain(id, pair) => (*id, Scalar::Gain(*pair)),
-        ExplainTarget::DeltaDelay(id, pair) => (*id, analysis.condition(*id)?.wanted_delay(*pair)),
+        ExplainTarget::DeltaDelay(id, pair) => {
+            (*id, analysis.condition(*id)?.delta_delay_scalar(*pair))
+        }
         ExplainTarget::NetGain(id, pair) => (*id, Scalar::NetGain(*pair)),
         ExplainTarget::Gain(id, channel) => (*id, Scalar::ChannelGain(*channel)),
         ExplainTarget::Delay(id, channel) => (*id, Scalar::ChannelDelay(*channel)),

@@ -208,7 +208,7 @@ fn use_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
         palette,
     } = page;
     let condition = state.condition().id();
-    let is_taken = state.study.taken_models().any(|(id, _)| id == condition);
+    let is_taken = state.study.adopted_models().any(|(id, _)| id == condition);
     let size = vec2(ui.available_width(), USE_LINE);
     ui.allocate_ui(size, |ui| {
         ui.set_min_size(size);

@@ -57,7 +57,7 @@ const RESPONSE_COLUMNS: [ResponseColumn; 36] = [
         full_precision(
             row.results
                 .result()
-                .and_then(|result| result.wanted_gain(row.pair)),
+                .and_then(|result| result.delta_gain(row.pair)),
         )
     }),
     ("D_s", |row| {

@@ -69,7 +69,7 @@ pub fn corrections(analysis: &Analysis, sha256: &str, chosen: &BTreeSet<Conditio
         "inputs": channels(dataset.inputs()),
         "outputs": channels(dataset.outputs()),
         "settings": settings,
-        "signs": analysis.study.turned_channels(),
+        "signs": analysis.study.reversed_channels(),
         "contains": ExportContents::of_results(analysis).json(dataset),
         "physics": physics(analysis),
         "couplings": couplings(analysis),

@@ -47,7 +47,7 @@ pub(super) fn bars(labelled: &LabelledAnalysis<'_>, condition: ConditionId) -> O
         bars: &uncertainty.conditions.get(&condition)?.bars,
         level: uncertainty.level,
     };
-    let band_delays = if labelled.analysis.condition(condition)?.asks_band_delays() {
+    let band_delays = if labelled.analysis.condition(condition)?.fits_band_delays() {
         bars.by_response(Scalar::BandDelay)
     } else {
         Value::Null

@@ -37,7 +37,7 @@ impl StudyText {
             }
         }
         let mut adopted = Vec::new();
-        for (condition, in_condition) in study.taken_models() {
+        for (condition, in_condition) in study.adopted_models() {
             adopted.push(AdoptedText {
                 condition: condition.0,
                 identified_models: in_condition
@@ -60,7 +60,7 @@ impl StudyText {
             settings: study.settings.named(&study.dataset),
             conditions: ConditionText::from_study(study),
             adopted,
-            signs: study.turned_channels(),
+            signs: study.reversed_channels(),
             requirements: study.requirements.as_ref().clone(),
             export: ExportText::from_choices(&study.exports),
             variants,
@@ -142,7 +142,7 @@ impl ConditionText {
 /// Converts a study file's content to decisions, checked against the dataset.
 pub(super) fn decisions_of(text: StudyText, dataset: &Dataset) -> Result<Decisions, ContentError> {
     let mut decisions = settings_and_choices(text.settings, text.conditions, dataset)?;
-    decisions.taken = adopted_models(text.adopted, dataset)?;
+    decisions.adopted = adopted_models(text.adopted, dataset)?;
     for variant in text.variants {
         let VariantText {
             name,
@@ -219,7 +219,7 @@ fn settings_and_choices(
     Ok(Decisions {
         settings,
         choices,
-        taken: Vec::new(),
+        adopted: Vec::new(),
         signs: Vec::new(),
         requirements: Arc::default(),
         exports: Arc::default(),

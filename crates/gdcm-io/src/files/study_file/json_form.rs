@@ -12,7 +12,7 @@ use gdcm_study::decisions::choices::BundleChoice;
 use gdcm_study::decisions::dataset_differences::Inventory;
 use gdcm_study::decisions::requirement_settings::RequirementSettings;
 use gdcm_study::decisions::settings::{ResponseNames, Settings};
-use gdcm_study::decisions::signs::TurnedChannel;
+use gdcm_study::decisions::signs::ReversedChannel;
 
 use crate::files::dataset_file::{ModelText, RecordText};
 use crate::json_reading::{Format, list};
@@ -53,7 +53,7 @@ pub(super) struct StudyText {
         skip_serializing_if = "Vec::is_empty",
         deserialize_with = "list::<MOST_CHANNELS, _, _>"
     )]
-    pub(super) signs: Vec<TurnedChannel>,
+    pub(super) signs: Vec<ReversedChannel>,
     /// Decisions about the requirements; omitted if they are the defaults.
     #[serde(default, skip_serializing_if = "is_default")]
     pub(super) requirements: RequirementSettings,

@@ -3,7 +3,7 @@
 use gdcm_io::embedded_example;
 use gdcm_model::dataset::{Band, BundleKind, ModelId};
 use gdcm_model::progress::Unobserved;
-use gdcm_study::jobs::curve_jobs::AcrossJob;
+use gdcm_study::jobs::across_job::AcrossJob;
 use gdcm_study::jobs::job::Job;
 
 #[test]

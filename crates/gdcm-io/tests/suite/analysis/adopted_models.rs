@@ -37,13 +37,13 @@ fn models_are_taken_and_returned_and_decisions_about_absent_ones_go() {
         .apply(&Edit::Pin(ModelId::new(id, BundleKind::Identified, &first)))
         .unwrap();
     study
-        .apply(&Edit::KeepVariant {
+        .apply(&Edit::StoreVariant {
             name: "pinned".into(),
         })
         .unwrap();
     let taken = others(&study);
     study
-        .apply(&Edit::TakeModels(vec![(id, Arc::clone(&taken))]))
+        .apply(&Edit::AdoptModels(vec![(id, Arc::clone(&taken))]))
         .unwrap();
     assert_eq!(
         study
@@ -63,7 +63,9 @@ fn models_are_taken_and_returned_and_decisions_about_absent_ones_go() {
         Arc::ptr_eq(study.file_dataset(), &before.dataset),
         "the file's dataset is known still"
     );
-    study.apply(&Edit::ReturnModels { condition: id }).unwrap();
+    study
+        .apply(&Edit::RestoreFileModels { condition: id })
+        .unwrap();
     assert!(Arc::ptr_eq(&study.dataset, &before.dataset));
 }
 
@@ -77,7 +79,7 @@ fn models_of_another_shape_are_refused_and_nothing_is_taken() {
     });
     let good = (ConditionId(1), others(&study));
     let refusal = study
-        .apply(&Edit::TakeModels(vec![good, (ConditionId(2), nothing)]))
+        .apply(&Edit::AdoptModels(vec![good, (ConditionId(2), nothing)]))
         .unwrap_err();
     assert!(
         matches!(
@@ -91,7 +93,7 @@ fn models_of_another_shape_are_refused_and_nothing_is_taken() {
     );
     assert_eq!(study, before);
     let absent = study
-        .apply(&Edit::TakeModels(vec![(ConditionId(99), others(&before))]))
+        .apply(&Edit::AdoptModels(vec![(ConditionId(99), others(&before))]))
         .unwrap_err();
     assert_eq!(
         absent,
@@ -109,7 +111,7 @@ fn a_saved_study_and_a_reloaded_dataset_keep_the_models_taken() {
     let mut study = Study::new(loaded.dataset.clone());
     let taken = others(&study);
     study
-        .apply(&Edit::TakeModels(vec![(
+        .apply(&Edit::AdoptModels(vec![(
             ConditionId(1),
             Arc::clone(&taken),
         )]))

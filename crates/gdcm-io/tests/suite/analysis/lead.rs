@@ -69,7 +69,7 @@ fn signed_delays_filters_and_gains_of_the_example_agree() {
             );
             assert_close(
                 &at,
-                found.wanted_gain(pair).unwrap(),
+                found.delta_gain(pair).unwrap(),
                 number(&expected["G"][pair.output][pair.input]),
                 1.0,
             );

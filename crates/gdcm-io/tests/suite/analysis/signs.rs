@@ -120,7 +120,7 @@ fn an_output_of_the_other_sign_is_found_and_turned_to_the_last_digit() {
     let example = analyze(&mut Engine::default(), &study_of_example());
     assert_eq!(results(&turned), results(&example));
     let said = condition_remarks(&study, turned.condition(ConditionId(1)).unwrap(), None);
-    let reversed = Remark::ChannelTurned {
+    let reversed = Remark::ChannelReversed {
         channel: NZ,
         role: SignRole::Identified,
     };

@@ -22,7 +22,7 @@ fn apply(study: &mut Study, edits: &[Edit]) {
 }
 
 fn keep(name: &str) -> Edit {
-    Edit::KeepVariant {
+    Edit::StoreVariant {
         name: name.to_owned(),
     }
 }
@@ -171,7 +171,7 @@ fn a_variant_brings_back_the_decisions_that_were_kept_and_stays() {
     let before = study.clone();
     apply(
         &mut study,
-        &[Edit::TakeVariant {
+        &[Edit::ApplyVariant {
             name: "soft".to_owned(),
         }],
     );
@@ -225,7 +225,7 @@ fn the_name_of_a_variant_is_given_once_and_can_be_changed_and_removed() {
         ["c"]
     );
     let name = "b".to_owned();
-    let take = Edit::TakeVariant { name: name.clone() };
+    let take = Edit::ApplyVariant { name: name.clone() };
     assert_eq!(refused(&mut study, take), EditRefusal::NoVariant { name });
 }
 

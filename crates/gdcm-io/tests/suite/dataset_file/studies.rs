@@ -249,10 +249,10 @@ proptest! {
             Edit::SetScheduled { condition: loaded.dataset.conditions()[1].id(), scheduled },
             Edit::SetHeldOut { condition: first.id(), held_out },
             Edit::SetSign { channel: Channel::Output(1), role: Some(SignRole::Identified) },
-            Edit::KeepVariant { name: "first → α".to_owned() },
+            Edit::StoreVariant { name: "first → α".to_owned() },
         ]);
         decided(&mut study, &others);
-        decided(&mut study, &[Edit::Restore(id(BundleKind::Physics, rejected)), Edit::KeepVariant { name: "second".to_owned() }]);
+        decided(&mut study, &[Edit::Restore(id(BundleKind::Physics, rejected)), Edit::StoreVariant { name: "second".to_owned() }]);
         save_study(&study, &loaded, &desk.study()).unwrap();
         let opened = open_study(&desk.study()).unwrap();
         prop_assert_eq!(opened.study, study);

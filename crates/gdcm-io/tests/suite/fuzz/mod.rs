@@ -281,7 +281,7 @@ fn own_files() -> [NamedBytes; 4] {
     for edit in [
         pin,
         sign,
-        Edit::KeepVariant {
+        Edit::StoreVariant {
             name: "other".to_owned(),
         },
     ] {

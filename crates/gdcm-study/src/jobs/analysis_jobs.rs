@@ -26,7 +26,7 @@ use crate::results::uncertainty::Uncertainty;
 use crate::shared::Shared;
 use crate::stages::couplings_assessment::with_couplings;
 use crate::stages::engine::Engine;
-use crate::stages::optima::solved;
+use crate::stages::optima::solve_within;
 use crate::stages::physics_assessment::with_physics;
 
 /// Maximum work for the proof behind a toggle's cost, in evaluations of a term in the objective:
@@ -45,7 +45,7 @@ impl Job for ProofJob {
     type Output = Result<Arc<Solution>, ProblemError>;
 
     fn run(&self, (): &mut (), progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
-        solved(&self.problem, ProofBudget::default(), progress)
+        solve_within(&self.problem, ProofBudget::default(), progress)
     }
 }
 

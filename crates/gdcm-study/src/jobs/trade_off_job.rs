@@ -16,7 +16,7 @@ use gdcm_model::progress::{Cancelled, Progress};
 use super::job::Job;
 use crate::results::analysis::{Analysis, ConditionAnalysis};
 use crate::stages::engine::LIVE_PROOF;
-use crate::stages::optima::solved;
+use crate::stages::optima::solve_within;
 
 /// Smallest and largest α in the trade-off, as powers of ten; the α slider has the same ends.
 const POWERS: [i32; 2] = [-3, 3];
@@ -140,7 +140,7 @@ impl Job for TradeOffJob {
             };
             // The proof budget of the interactive analysis, whose gains the points are compared
             // with.
-            match solved(&problem, LIVE_PROOF, progress)? {
+            match solve_within(&problem, LIVE_PROOF, progress)? {
                 Ok(solution) => {
                     let condition = ConditionAnalysis {
                         gain_problem: Arc::new(problem),

@@ -1,5 +1,9 @@
 //! Benefit of leads for a study that does not use them: J with lead filters in the channels that
 //! need them (M15.5).
+//!
+//! J is the mismatch cost, the sum of a magnitude part and a phase part (M4). A lead filter
+//! advances the phase in the band and hardly changes the magnitude there (M15.5), so that the
+//! magnitude part is assumed to stay.
 
 use gdcm_method::correction::ChannelCorrection;
 use gdcm_method::correction::channel_leads::ChannelLeads;
@@ -14,47 +18,60 @@ use super::comparison::Mismatches;
 /// with leads.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LeadOffer {
-    /// J under the present correction.
+    /// J under the present correction, without leads.
     pub without: f64,
-    /// J with a lead filter in each channel that needs one; the gains are kept, because such
-    /// filters change them little.
+    /// J with a lead filter in each channel that needs one, and the present gains.
     pub with: f64,
 }
 
 impl LeadOffer {
-    /// Leads are recommended below this ratio of J with leads to J without.
-    const WORTH: f64 = 0.9;
+    /// Leads are recommended below this ratio of J with leads to J without. A compromise: the
+    /// larger the ratio, the smaller the benefit for which leads are recommended.
+    const LARGEST_RATIO: f64 = 0.9;
 
     /// Returns J without and with these leads if they would reduce J over the constrained responses
-    /// by more than a tenth. `mismatch` contains the constrained responses only; `now` is J under
-    /// the present correction.
+    /// by more than a tenth.
+    ///
+    /// ```text
+    /// 1  J of each response under the leads alone (gains of 1): its phase part is that with leads
+    /// 2  J without leads: the present cost;  with leads: its magnitude part, and the phase part
+    ///    from step 1
+    /// 3  means over the responses that have both
+    /// ```
+    ///
+    /// `constrained` contains the mismatches of the constrained responses only; `present` is J
+    /// under the present correction.
     pub(crate) fn new(
         leads: ChannelLeads,
-        mismatch: &Mismatches,
-        now: &PairTable<Option<CostChange>>,
+        constrained: &Mismatches,
+        present: &PairTable<Option<CostChange>>,
         omega: &[f64],
         average: CostAverage,
     ) -> Option<Self> {
-        let phase_alone = ChannelCorrection::of_leads(leads.taus_s.map(|_, _| 1.0), leads);
-        let left = corrected_cost(mismatch, &phase_alone, omega, average);
-        let mut without = 0.0;
-        let mut with = 0.0;
+        // Step 1.
+        let unit_gains = leads.taus_s.map(|_, _| 1.0);
+        let leads_alone = ChannelCorrection::of_leads(unit_gains, leads);
+        let cost_with_leads = corrected_cost(constrained, &leads_alone, omega, average);
+        // Step 2.
+        let mut sum_without = 0.0;
+        let mut sum_with = 0.0;
         let mut count = 0;
-        for (pair, left) in left.iter() {
-            if let (Some(left), Some(now)) = (left, now[pair]) {
-                without += now.corrected.total();
-                with += now.corrected.magnitude + left.phase;
+        for (pair, with_leads) in cost_with_leads.iter() {
+            if let (Some(with_leads), Some(present)) = (with_leads, present[pair]) {
+                sum_without += present.corrected.total();
+                sum_with += present.corrected.magnitude + with_leads.phase;
                 count += 1;
             }
         }
+        // Step 3.
         if count == 0 {
             return None;
         }
         let offer = Self {
-            without: without / f64::from(count),
-            with: with / f64::from(count),
+            without: sum_without / f64::from(count),
+            with: sum_with / f64::from(count),
         };
-        if offer.with < Self::WORTH * offer.without {
+        if offer.with < Self::LARGEST_RATIO * offer.without {
             Some(offer)
         } else {
             None

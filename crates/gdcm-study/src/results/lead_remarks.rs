@@ -1,10 +1,13 @@
 //! Finds the remarks on lead: the lead that the responses need, whether they get it, and the checks
 //! to make before leads are used (M15).
 //!
-//! D is the delay that would match a response: by eq. (9) the median of the phase difference
-//! divided by frequency, over the band the slope of a line through it (M15.2). A negative D needs
-//! lead. A lead that all responses need points to the clock of the records, or to servo and sensor
-//! models (M15.6).
+//! D is the delay that would match a response, from the phase by which the physics model leads the
+//! identified one: by eq. (9) the median over frequency of phase / frequency; *over the band* the
+//! slope of the line through the origin that fits the phase best (M15.2). A negative D needs lead.
+//! A lead that all responses need points to the clock of the records, or to servo and sensor
+//! models.
+//!
+//! The thresholds for the remarks are in M15.6.
 
 use gdcm_model::statistics::median;
 use gdcm_model::units::ratio_to_db;
@@ -19,17 +22,18 @@ use crate::decisions::study::Study;
 const APART_S: f64 = 0.02;
 /// Minimum absolute signed delay \[s\] that is not negligible.
 const LEAST_DELAY_S: f64 = 2e-3;
-/// Minimum magnitude of a gain change due to leads \[dB\] that is reported.
-const LEAST_RISE_DB: f64 = 0.05;
-/// Maximum range of leads with a common cause, relative to their median.
+/// Minimum magnitude of a gain change due to leads \[dB\] that is reported: with second-order lead
+/// filters it is about 0.01 dB, with first-order ones about 0.1 dB (M15.5).
+const LEAST_GAIN_CHANGE_DB: f64 = 0.05;
+/// Maximum range of the leads that count as common, relative to their median.
 const COMMON_RANGE: f64 = 0.5;
 
-/// Returns the remarks on lead. Whether the needed leads are achieved, and the gain that they
-/// raise, are reported only for a study with leads.
+/// Returns the remarks on lead. Whether the needed leads are achieved, and the gain that
+/// they raise, are reported only for a study with leads.
 pub fn lead_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     let mut remarks: Vec<Remark> = common_lead(result).into_iter().collect();
     if study.settings.phase == PhaseCorrection::Lead {
-        remarks.extend(achieved(study, result));
+        remarks.extend(delays_achieved(study, result));
         remarks.extend(raised_gain(result));
     }
     remarks.extend(not_a_delay(study, result));
@@ -40,16 +44,20 @@ pub fn lead_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
 /// Reports the median lead if it is at least [`LEAST_DELAY_S`], if all constrained responses (two
 /// or more) need lead, and if their leads differ by at most half the median.
 fn common_lead(result: &ConditionAnalysis) -> Option<Remark> {
-    let mut wanted_s: Vec<f64> = result
+    let mut band_delays_s: Vec<f64> = result
         .held()
         .marked()
         .filter_map(|pair| result.comparison.delta.band_delay_s[pair])
         .collect();
-    let least = wanted_s.iter().copied().fold(f64::INFINITY, f64::min);
-    let most = wanted_s.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let middle = median(&mut wanted_s);
-    let is_common = wanted_s.len() > 1
-        && most < 0.0
+    let least = band_delays_s.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = band_delays_s
+        .iter()
+        .copied()
+        .fold(f64::NEG_INFINITY, f64::max);
+    let middle = median(&mut band_delays_s);
+    let all_need_lead = most < 0.0;
+    let is_common = band_delays_s.len() > 1
+        && all_need_lead
         && most - least <= COMMON_RANGE * middle.abs()
         && -middle >= LEAST_DELAY_S;
     if !is_common {
@@ -60,7 +68,7 @@ fn common_lead(result: &ConditionAnalysis) -> Option<Remark> {
 
 /// Reports first that every channel's delay or lead is negligible; else that every constrained
 /// response gets the delay or lead that it needs; else the responses that do not, with the reason.
-fn achieved(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
+fn delays_achieved(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     let delays = &result.delays;
     let is_negligible = delays
         .inputs
@@ -82,15 +90,15 @@ fn achieved(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
 }
 
 /// Reports the constrained response whose G the lead filters change most; `None` below
-/// [`LEAST_RISE_DB`] and without leads. The channel gains compensate for this change.
+/// [`LEAST_GAIN_CHANGE_DB`] and without leads. The channel gains compensate for this change.
 fn raised_gain(result: &ConditionAnalysis) -> Option<Remark> {
     let compensated = result.compensated.as_ref()?;
-    let rises = result.held().marked().filter_map(|pair| {
-        let rise = result.comparison.delta.gain[pair]? / compensated.gain[pair]?;
-        Some((pair, ratio_to_db(rise)))
+    let changes = result.held().marked().filter_map(|pair| {
+        let ratio = result.comparison.delta.gain[pair]? / compensated.gain[pair]?;
+        Some((pair, ratio_to_db(ratio)))
     });
-    let (pair, rise_db) = rises.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
-    if rise_db.abs() < LEAST_RISE_DB || rise_db.is_nan() {
+    let (pair, rise_db) = changes.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
+    if rise_db.abs() < LEAST_GAIN_CHANGE_DB || rise_db.is_nan() {
         return None;
     }
     Some(Remark::GainRaised { rise_db, pair })

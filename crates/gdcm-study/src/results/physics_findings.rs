@@ -1,9 +1,13 @@
 //! Diagnosis of a study's physics parameters, with the runs and conditions that take no part (M18).
 //!
-//! A *run* is a physics model linearised again with one parameter moved; from the runs the values
-//! are fitted with which the physics models meet the identified models of all conditions. *Stepwise
-//! order* begins with the parameter that lowers the misfit of conditions left out most. A parameter
-//! is *named* if its interval excludes zero and it helps to predict these conditions (M18.4).
+//! A *parameter* is a named quantity of the physics model, such as an inertia. A *run* is a physics
+//! model linearised again with one parameter moved. The fit uses the runs to find the parameter
+//! values with which the physics models match the identified models of all conditions best.
+//!
+//! *Stepwise order* begins with the parameter that lowers the misfit of conditions left out most. A
+//! parameter is *named* if its interval excludes zero and it helps to predict these conditions
+//! (M18.4). `z` is a parameter's change over its *plausible* standard deviation, which says how far
+//! the parameter may reasonably be from its value in the physics model.
 
 use gdcm_method::physics::diagnosis::ParameterDiagnosis;
 use gdcm_method::physics::{
@@ -144,7 +148,7 @@ impl DiagnosedParameter<'_> {
     }
 }
 
-/// How much a value changes when a condition is left out.
+/// How much a condition pulls a parameter's fitted value: the change if it is left out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ConditionPull {
     pub condition: ConditionId,

@@ -160,6 +160,8 @@ fn quantities(
     for row in &comparison.rows {
         let mut models = Vec::new();
         for (role, validation) in validations {
+            // All windows are from one record, which has a single check. A role without a check
+            // is absent from the plot.
             if let Ok(checks) = RecordCheck::of_windows(&validation.windows, &row.channel)
                 && let Some(check) = checks.into_iter().next()
             {

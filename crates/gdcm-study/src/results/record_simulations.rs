@@ -7,8 +7,12 @@
 //!    estimated initial state and offsets (M14.6); all models of a condition have the same
 //!    windows, so that the compared manoeuvres begin at the same samples
 //! 3  each row of the tolerance table whose output and unit exist: share inside, largest excess,
-//!    peak error, correlation
+//!    peak error, correlation; over all outputs J_rms and Theil's coefficients (M17.4)
 //! ```
+//!
+//! A *role* is a version of the model: physics, corrected, scheduled or identified. J_rms is the
+//! weighted rms error; Theil's coefficient of an output is its rms error over the sum of the rms
+//! values of the measured and the simulated output.
 
 use std::collections::BTreeMap;
 
@@ -68,12 +72,12 @@ pub fn time_histories_of(
     let prepared = prepare_records(analysis, records, execution, &mut missing)?;
     let models = role_models(analysis, &prepared, &mut missing);
     let simulations = simulations(&prepared, &models);
-    let found = execution.each(simulations.len(), 1, |index| {
+    let outcomes = execution.each(simulations.len(), 1, |index| {
         finding(&comparison, &simulations[index])
     })?;
     let mut findings = Vec::new();
-    for (simulation, found) in simulations.into_iter().zip(found) {
-        match found {
+    for (simulation, outcome) in simulations.into_iter().zip(outcomes) {
+        match outcome {
             Ok(finding) => findings.push(finding),
             Err(why) => {
                 let id = simulation.prepared.result.condition.id();
@@ -291,9 +295,10 @@ fn tolerance_finding(
 ) -> Result<ToleranceFinding, NotCompared> {
     let channel = &row.channel;
     let checks = RecordCheck::of_windows(windows, channel).map_err(NotCompared::NotChecked)?;
+    // All windows are from one record, which has a single check.
     let check = checks.first().ok_or(NotCompared::NoSamples)?;
-    let worst = check.worst().ok_or(NotCompared::NoSamples)?;
-    let peak = check.peak().ok_or(NotCompared::NoSamples)?;
+    let window_of_excess = check.worst().ok_or(NotCompared::NoSamples)?;
+    let window_of_peak = check.peak().ok_or(NotCompared::NoSamples)?;
     let correlation = check.correlation();
     let on_axis = comparison.is_on_axis(channel.output, moved);
     Ok(ToleranceFinding {
@@ -302,10 +307,10 @@ fn tolerance_finding(
         integrated: channel.integrated,
         unit: channel.unit.clone(),
         share_inside: check.share_inside(),
-        largest_excess: worst.largest_excess,
-        largest_excess_at_s: worst.largest_excess_at_s,
-        peak_error: peak.peak_error,
-        peak_error_at_s: peak.peak_error_at_s,
+        largest_excess: window_of_excess.largest_excess,
+        largest_excess_at_s: window_of_excess.largest_excess_at_s,
+        peak_error: window_of_peak.peak_error,
+        peak_error_at_s: window_of_peak.peak_error_at_s,
         correlation,
         on_axis,
         trend: Trend::from_correlation(correlation, on_axis),

@@ -1,6 +1,9 @@
 //! Remarks on a condition's result as typed facts: each with a stable code, its kind and the
-//! decision that it suggests. The sentences are in the crate `gdcm-words`. In names, *held*
-//! responses are the constrained ones, *free* the others.
+//! decision that it suggests. The sentences are in the crate `gdcm-words`.
+//!
+//! In names, *held* responses are the constrained ones, *free* the others; a *turned* channel has a
+//! reversed sign. G is the gain and D the delay that would match a response (M6); J is the mismatch
+//! cost (M4).
 
 use gdcm_method::correction::Channel;
 use gdcm_method::correction::conflict::Conflict;

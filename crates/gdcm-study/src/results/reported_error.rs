@@ -3,13 +3,14 @@
 //!
 //! A representative is the model that stands for its bundle. A measured response carries coherence,
 //! from which the errors of `ln G` and D follow; an identified model carries the standard
-//! deviations of its response, called *bands*. G is the gain and D the delay that would match a
-//! response (M6).
+//! deviations of its response over frequency ([`ModelBands`]). G is the gain and D the delay that
+//! would match a response (M6).
 
 use gdcm_method::uncertainty::coherence_error::CoherenceError;
 use gdcm_method::uncertainty::condition_bars::ReportedUncertainty;
 use gdcm_method::uncertainty::{IdentificationSource, Scalar, VarianceComponent};
-use gdcm_model::dataset::{BundleKind, Dynamics, Pair, PairTable};
+use gdcm_model::dataset::model::ModelBands;
+use gdcm_model::dataset::{Band, BundleKind, Dynamics, Pair, PairTable};
 use gdcm_model::response::interpolation::coherence_at;
 use gdcm_model::statistics::median;
 
@@ -28,7 +29,7 @@ struct ReportedError {
 /// Standard errors for an identified representative's responses, by source.
 pub(crate) struct ReportedErrors {
     by_coherence: Option<PairTable<Option<ReportedError>>>,
-    by_bands: Option<PairTable<Option<ReportedError>>>,
+    by_deviations: Option<PairTable<Option<ReportedError>>>,
 }
 
 impl ReportedErrors {
@@ -36,7 +37,7 @@ impl ReportedErrors {
     pub(crate) fn new(analysis: &Analysis, result: &ConditionAnalysis) -> Self {
         Self {
             by_coherence: errors_by_coherence(analysis, result),
-            by_bands: errors_by_bands(analysis, result),
+            by_deviations: errors_by_deviations(analysis, result),
         }
     }
 
@@ -57,8 +58,8 @@ impl ReportedErrors {
             Scalar::ChannelGain(_) | Scalar::ChannelDelay(_) => return None,
         };
         let by_coherence = self.by_coherence.as_ref().and_then(|errors| errors[pair]);
-        let by_bands = self.by_bands.as_ref().and_then(|errors| errors[pair]);
-        let (reported, source) = match (by_coherence, by_bands) {
+        let by_deviations = self.by_deviations.as_ref().and_then(|errors| errors[pair]);
+        let (reported, source) = match (by_coherence, by_deviations) {
             (Some(reported), _) => (reported, IdentificationSource::Coherence),
             (None, Some(reported)) => (reported, IdentificationSource::ModelBand),
             (None, None) => return None,
@@ -96,7 +97,8 @@ pub fn takes_reported_error(result: &ConditionAnalysis, scalar: Scalar) -> bool 
 /// Returns whether a condition's identified representative has standard errors, from its standard
 /// deviations or from its coherence.
 pub fn reports_error(analysis: &Analysis, result: &ConditionAnalysis) -> bool {
-    errors_by_bands(analysis, result).is_some() || errors_by_coherence(analysis, result).is_some()
+    errors_by_deviations(analysis, result).is_some()
+        || errors_by_coherence(analysis, result).is_some()
 }
 
 /// Returns the identified representative's standard errors from its coherence; `None` where
@@ -127,37 +129,42 @@ fn errors_by_coherence(
 
 /// Returns the identified representative's standard errors from its model's standard deviations:
 /// medians over the comparison band; no response has any if the deviations have no frequency in the
-/// band. The standard deviations are treated as exact.
-fn errors_by_bands(
+/// band.
+fn errors_by_deviations(
     analysis: &Analysis,
     result: &ConditionAnalysis,
 ) -> Option<PairTable<Option<ReportedError>>> {
     let identified = result.representative_model(BundleKind::Identified);
-    let bands = identified.bands.as_ref()?;
-    let band = analysis.study.settings.band;
-    let inside: Vec<(usize, f64)> = bands
-        .omega()
-        .iter()
-        .copied()
-        .enumerate()
-        .filter(|(_, omega)| (band.min()..=band.max()).contains(omega))
-        .collect();
-    if inside.is_empty() {
-        return Some(bands.sd_db().map(|_, _| None));
-    }
-    Some(bands.sd_db().map(|pair: Pair, sd_db| {
-        let sd_deg = &bands.sd_deg()[pair];
-        let mut ln_gains: Vec<f64> = inside.iter().map(|(at, _)| LN_DB * sd_db[*at]).collect();
+    let deviations = identified.bands.as_ref()?;
+    let inside = places_in_band(deviations, analysis.study.settings.band);
+    Some(deviations.sd_db().map(|pair: Pair, sd_db| {
+        if inside.is_empty() {
+            return None;
+        }
+        let sd_deg = &deviations.sd_deg()[pair];
+        let mut ln_gains: Vec<f64> = inside.iter().map(|place| LN_DB * sd_db[*place]).collect();
         let mut delays_s: Vec<f64> = inside
             .iter()
-            .map(|(at, omega)| sd_deg[*at].to_radians() / omega)
+            .map(|place| sd_deg[*place].to_radians() / deviations.omega()[*place])
             .collect();
         Some(ReportedError {
             error: CoherenceError {
                 ln_gain: median(&mut ln_gains),
                 delay_s: median(&mut delays_s),
             },
+            // The standard deviations are treated as exact.
             degrees_of_freedom: f64::INFINITY,
         })
     }))
+}
+
+/// Returns the indices of the frequencies inside a band.
+fn places_in_band(deviations: &ModelBands, band: Band) -> Vec<usize> {
+    let mut inside = Vec::new();
+    for (place, omega) in deviations.omega().iter().enumerate() {
+        if (band.min()..=band.max()).contains(omega) {
+            inside.push(place);
+        }
+    }
+    inside
 }

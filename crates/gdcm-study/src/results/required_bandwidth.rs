@@ -1,5 +1,10 @@
 //! Findings on bandwidth and phase delay (M17.1), in the export format; they are computed by
 //! `condition_bandwidths::bandwidth_findings`.
+//!
+//! Bandwidth is the frequency with 45 deg phase margin (phase -135 deg) or, for a rate response,
+//! that with 6 dB gain margin if it is lower; phase delay describes how fast the phase falls beyond
+//! -180 deg. A *swap* is a repetition of the analysis with another model of a bundle, for the
+//! intervals (M13.1). A metric *rests* above or below the band if it depends on the response there.
 
 use std::collections::BTreeMap;
 
@@ -145,13 +150,13 @@ pub(super) fn metric_values(bandwidth: &Bandwidth) -> MetricValues {
 impl BandwidthFinding {
     /// Returns the metrics and the maximum phase deviation, with their export names.
     pub fn quantities(&self) -> [(&'static str, Option<f64>); 6] {
-        let [bandwidth, phase, gain, neutral, delay] = METRICS;
+        let [omega_bw, omega_phase, omega_gain, omega_180, phase_delay] = METRICS;
         [
-            (bandwidth, self.omega_bw_rad_s),
-            (phase, self.omega_phase_rad_s),
-            (gain, self.omega_gain_rad_s),
-            (neutral, self.omega_180_rad_s),
-            (delay, self.phase_delay_s),
+            (omega_bw, self.omega_bw_rad_s),
+            (omega_phase, self.omega_phase_rad_s),
+            (omega_gain, self.omega_gain_rad_s),
+            (omega_180, self.omega_180_rad_s),
+            (phase_delay, self.phase_delay_s),
             (DEPARTURE, self.phase_departure_deg),
         ]
     }

@@ -1,5 +1,6 @@
 //! The physics representative's modes, without and with the study's couplings, compared with the
-//! identified representative's, where both models have matrices (M17.3).
+//! identified representative's (M17.3). Only models with matrices have modes; measured responses
+//! have none.
 //!
 //! A mode is a pole, or a conjugate pair of poles. Two modes match if their poles are close and
 //! their shapes over the outputs alike. In names, *flown* denotes the identified representative.
@@ -191,7 +192,7 @@ pub(crate) fn mode_findings(
     );
     let mut findings = Vec::new();
     for row in rows {
-        let numbers = |model: usize| {
+        let matching = |model: usize| {
             let mode = row.models.get(model).copied().flatten()?;
             Some(ModeNumbers::new(&mode, &physics.name))
         };
@@ -207,9 +208,9 @@ pub(crate) fn mode_findings(
             },
             identified: ModeNumbers::new(&row.flown, &identified.name),
             identified_deviation: row.deviation,
-            physics: numbers(WITHOUT_COUPLINGS),
+            physics: matching(WITHOUT_COUPLINGS),
             corrected_verdict: row.verdicts.get(WITH_COUPLINGS).copied(),
-            corrected: numbers(WITH_COUPLINGS),
+            corrected: matching(WITH_COUPLINGS),
             tolerance: row.tolerance,
         });
     }

@@ -1,4 +1,9 @@
-//! Compares a rerun with the prediction from the runs (M18.6).
+//! Compares a rerun with the prediction from the runs (M18.6, from which the limits are).
+//!
+//! A *run* is a physics model linearised again with one parameter moved, a *rerun* with several.
+//! The prediction `H(z)` is the *base*, the model with all parameters nominal, changed according to
+//! the runs; z are the parameters' changes. J is the mismatch cost; responses with J up to 50 are
+//! next to indistinguishable (M4).
 
 use gdcm_method::physics::ConditionOmission;
 use gdcm_method::physics::increments::IncrementError;
@@ -11,9 +16,8 @@ use super::correction_costs::AxisCost;
 pub const GOOD_PREDICTION: f64 = 1.0;
 /// J between prediction and rerun above which the parameters' effect is not linear enough.
 pub const POOR_PREDICTION: f64 = 5.0;
-/// Ratio of the prediction's J to the J of its base (the model with all parameters nominal), both
-/// against the rerun, above which the parameters' effect is not linear enough (unless the
-/// prediction is good).
+/// Ratio of the prediction's J to the J of its base, both against the rerun, above which the
+/// parameters' effect is not linear enough (unless the prediction is good).
 pub const POOR_SHARE: f64 = 0.1;
 
 /// A rerun, that is, a physics model with parameters moved together, compared with the prediction

@@ -86,30 +86,33 @@ impl ShapeSources<'_> {
         identified: &ResponseShape,
     ) -> Option<ShapedResponse> {
         let mismatch = comparison.representative.mismatch[pair].as_ref()?;
-        let removed = GainDelay::new(
+        let correction = GainDelay::new(
             comparison.delta.gain[pair]?,
             comparison.delta.delay_s[pair]?,
         );
         Some(ShapedResponse {
-            cost: mismatch.cost(self.omega, removed, self.average).total(),
-            shape: self.shape(mismatch, removed, identified),
+            cost: mismatch.cost(self.omega, correction, self.average).total(),
+            shape: self.shape(mismatch, correction, identified),
         })
     }
 
-    /// Adds the difference that remains after `removed` to the identified response, which gives the
-    /// physics response after G and D.
+    /// Returns the physics response after G and D: the identified response plus what remains of the
+    /// difference `physics - identified` (in dB and in phase) after `correction`.
     fn shape(
         &self,
         mismatch: &Mismatch,
-        removed: GainDelay,
+        correction: GainDelay,
         identified: &ResponseShape,
     ) -> ResponseShape {
         let omega = mismatch.omega(self.omega);
-        let magnitude_db: Vec<f64> = removed
+        let magnitude_db: Vec<f64> = correction
             .magnitudes_db(&mismatch.magnitude_db, omega)
             .collect();
         let phase = mismatch.phase_difference(self.omega);
-        let phase_deg = removed.phases(&phase, omega).map(f64::to_degrees).collect();
+        let phase_deg = correction
+            .phases(&phase, omega)
+            .map(f64::to_degrees)
+            .collect();
         let points = self.omega.len();
         ResponseShape {
             magnitude_db: sum(

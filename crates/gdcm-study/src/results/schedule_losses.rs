@@ -64,7 +64,8 @@ impl Analysis {
 }
 
 /// Returns a caution about each condition in which the mean on-axis J under the schedule is above 1
-/// and more than twice that under its own correction (M11).
+/// (an error of 0.22 dB) and more than twice that under its own correction
+/// ([`ScheduledCost::is_notable`], M11).
 pub(crate) fn schedule_cost_cautions(analysis: &Analysis) -> Vec<ScheduleCaution> {
     let mut cautions = Vec::new();
     for result in analysis
@@ -93,7 +94,7 @@ fn scheduled_cost(analysis: &Analysis, result: &ConditionAnalysis) -> Option<Sch
         .physics
         .rejected
         .contains(nominal);
-    let (model, models) = if is_rejected {
+    let (model, against_flight) = if is_rejected {
         (
             result.representative_name(BundleKind::Physics),
             &result.comparison.representative,
@@ -104,8 +105,8 @@ fn scheduled_cost(analysis: &Analysis, result: &ConditionAnalysis) -> Option<Sch
     let scheduled = schedule.at_state(condition.flight_state());
     let mut sum = CostSum::default();
     for pair in analysis.study.dataset.measuring_pairs().marked() {
-        let scheduled = cost_of(analysis, models, &scheduled, pair);
-        let own = cost_of(analysis, models, &result.correction, pair);
+        let scheduled = cost_of(analysis, against_flight, &scheduled, pair);
+        let own = cost_of(analysis, against_flight, &result.correction, pair);
         if let (Some(scheduled), Some(own)) = (scheduled, own) {
             sum.add(scheduled, own);
         }
@@ -122,14 +123,15 @@ fn scheduled_cost(analysis: &Analysis, result: &ConditionAnalysis) -> Option<Sch
     })
 }
 
-/// Returns a model's J in a response under a correction.
+/// Returns a model's J in a response under a correction, from its mismatch against the identified
+/// representative.
 fn cost_of(
     analysis: &Analysis,
-    models: &ModelMismatch,
+    against_flight: &ModelMismatch,
     correction: &ChannelCorrection,
     pair: Pair,
 ) -> Option<f64> {
-    let mismatch = models.mismatch[pair].as_ref()?;
+    let mismatch = against_flight.mismatch[pair].as_ref()?;
     let average = analysis.study.settings.cost_average;
     Some(corrected_cost_on(mismatch, correction, pair, &analysis.omega, average)?.total())
 }

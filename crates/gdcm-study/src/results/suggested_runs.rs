@@ -11,8 +11,14 @@
 //!
 //! A pattern only says what is worth trying: parameters with similar effects produce the same
 //! pattern. The cyclic inputs (longitudinal and lateral stick) are the two inputs whose only
-//! on-axis response is a rate; a coupling `may_be_zero` if its error bar includes zero (M16).
+//! on-axis response is a rate. Couplings are a mixing of the inputs and a feedback from outputs to
+//! inputs; one `may_be_zero` if its error bar includes zero (M16). G is the gain that would match
+//! a response (M6).
+//!
+//! A value is *notable* above a limit below which it would not justify a run. The limits are a
+//! compromise: lower ones suggest more runs.
 
+use gdcm_method::correction::Channels;
 use gdcm_method::couplings::coupling_shares::{cyclic_inputs, feedback_shares};
 use gdcm_method::physics::OfferedParameter;
 use gdcm_model::dataset::Pair;
@@ -258,13 +264,15 @@ impl PatternSearch<'_> {
         let inputs = self.cyclic()?;
         let [first, second] = inputs;
         let mixing = couplings.mixing(couplings.mean_airspeed_kt());
-        let [forth, back] = [&mixing[(first, second)], &mixing[(second, first)]];
-        let is_notable = forth.value.abs().max(back.value.abs()) >= NOTABLE_SHARE
-            && !(forth.may_be_zero && back.may_be_zero);
-        if is_notable && forth.value * back.value < 0.0 {
+        let into_first = &mixing[(first, second)];
+        let into_second = &mixing[(second, first)];
+        let larger = into_first.value.abs().max(into_second.value.abs());
+        let is_notable =
+            larger >= NOTABLE_SHARE && !(into_first.may_be_zero && into_second.may_be_zero);
+        if is_notable && into_first.value * into_second.value < 0.0 {
             Some(RunPattern::CrossedCyclic {
                 inputs,
-                shares: [forth.value, back.value],
+                shares: [into_first.value, into_second.value],
             })
         } else {
             None
@@ -279,19 +287,20 @@ impl PatternSearch<'_> {
         let on_axis = self.analysis.study.dataset.on_axis();
         let feedback = couplings.feedback();
         let shares = feedback_shares(&couplings.fitted.problem, couplings.fitted.matrices());
-        for share in shares {
-            let is_crossed = cyclic.contains(&share.input)
-                && self.is_rate(share.output)
+        // In descending order: the first that qualifies is the largest.
+        for path in shares {
+            let is_crossed = cyclic.contains(&path.input)
+                && self.is_rate(path.output)
                 && cyclic
                     .iter()
-                    .any(|&other| other != share.input && on_axis[Pair::new(share.output, other)]);
+                    .any(|&other| other != path.input && on_axis[Pair::new(path.output, other)]);
             let is_significant =
-                share.share >= NOTABLE_SHARE && !feedback[(share.input, share.output)].may_be_zero;
+                path.share >= NOTABLE_SHARE && !feedback[(path.input, path.output)].may_be_zero;
             if is_crossed && is_significant {
                 return Some(RunPattern::CrossedRate {
-                    input: share.input,
-                    output: share.output,
-                    share: share.share,
+                    input: path.input,
+                    output: path.output,
+                    share: path.share,
                 });
             }
         }
@@ -301,28 +310,46 @@ impl PatternSearch<'_> {
     /// Finds equal leads: in the channels where leads are requested, otherwise in the on-axis
     /// responses.
     fn equal_leads(&self) -> Vec<RunPattern> {
-        let mut found = Vec::new();
         if self.results.is_empty() {
-            return found;
+            return Vec::new();
         }
-        let count = self.results.len() as f64;
+        let mut found = Vec::new();
         if self.analysis.study.settings.phase == PhaseCorrection::Lead {
-            let dataset = &self.analysis.study.dataset;
-            let mut inputs = vec![0.0; dataset.inputs().len()];
-            let mut outputs = vec![0.0; dataset.outputs().len()];
-            for result in &self.results {
-                let delays_s = result.correction.signed_delays_s();
-                for (mean_s, delay_s) in inputs.iter_mut().zip(&delays_s.inputs) {
-                    *mean_s += delay_s / count;
-                }
-                for (mean_s, delay_s) in outputs.iter_mut().zip(&delays_s.outputs) {
-                    *mean_s += delay_s / count;
-                }
-            }
-            found.extend(equal_lead(LeadSide::Inputs, &inputs));
-            found.extend(equal_lead(LeadSide::Outputs, &outputs));
-            return found;
+            let means_s = self.mean_channel_delays_s();
+            found.extend(equal_lead(LeadSide::Inputs, &means_s.inputs));
+            found.extend(equal_lead(LeadSide::Outputs, &means_s.outputs));
+        } else {
+            found.extend(equal_lead(
+                LeadSide::Responses,
+                &self.mean_response_delays_s(),
+            ));
         }
+        found
+    }
+
+    /// Returns each channel's mean signed delay over the conditions \[s\].
+    fn mean_channel_delays_s(&self) -> Channels<f64> {
+        let count = self.results.len() as f64;
+        let dataset = &self.analysis.study.dataset;
+        let mut means_s = Channels {
+            inputs: vec![0.0; dataset.inputs().len()],
+            outputs: vec![0.0; dataset.outputs().len()],
+        };
+        for result in &self.results {
+            let delays_s = result.correction.signed_delays_s();
+            for (mean_s, delay_s) in means_s.inputs.iter_mut().zip(&delays_s.inputs) {
+                *mean_s += delay_s / count;
+            }
+            for (mean_s, delay_s) in means_s.outputs.iter_mut().zip(&delays_s.outputs) {
+                *mean_s += delay_s / count;
+            }
+        }
+        means_s
+    }
+
+    /// Returns each on-axis response's mean D over the band, over the conditions that have it
+    /// \[s\].
+    fn mean_response_delays_s(&self) -> Vec<f64> {
         let mut means_s = Vec::new();
         for pair in self.analysis.study.dataset.on_axis().marked() {
             let mut delays_s = Vec::new();
@@ -331,8 +358,7 @@ impl PatternSearch<'_> {
             }
             means_s.extend(mean(&delays_s));
         }
-        found.extend(equal_lead(LeadSide::Responses, &means_s));
-        found
+        means_s
     }
 
     /// Finds the rate commanded by the pedals (the first on-axis rate of an input that is not
@@ -346,7 +372,7 @@ impl PatternSearch<'_> {
             .marked()
             .find(|pair| !cyclic.contains(&pair.input) && self.is_rate(pair.output))?;
         let gain = mean(&self.ln_gains(pair))?;
-        if gain.abs() < NOTABLE_LN_GAIN && self.spread_of_gain(pair) < NOTABLE_LN_GAIN {
+        if gain.abs() < NOTABLE_LN_GAIN && self.half_range_of_gain(pair) < NOTABLE_LN_GAIN {
             return None;
         }
         let damping_share = match self.couplings {
@@ -370,7 +396,7 @@ impl PatternSearch<'_> {
     }
 
     /// Returns half the range that ln G spans over the conditions; 0 without values.
-    fn spread_of_gain(&self, pair: Pair) -> f64 {
+    fn half_range_of_gain(&self, pair: Pair) -> f64 {
         let gains = self.ln_gains(pair);
         let least = gains.iter().copied().fold(f64::INFINITY, f64::min);
         let most = gains.iter().copied().fold(f64::NEG_INFINITY, f64::max);

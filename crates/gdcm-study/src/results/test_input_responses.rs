@@ -1,5 +1,5 @@
 //! Responses to a test input from a condition's models, for plots (M17.2); there is no measurement
-//! to compare them with.
+//! to compare them with. In names, such a response is an *answer*.
 
 use nalgebra::DMatrix;
 
@@ -12,7 +12,7 @@ use super::analysis::{Analysis, NoResult};
 use super::requirement_role::{RequirementRole, RoleModelError};
 
 /// Displayed time, as a multiple of the test input's duration.
-const SHOWN: f64 = 5.0;
+const SHOWN_DURATIONS: f64 = 5.0;
 
 /// Minimum displayed time \[s\].
 const LEAST_SHOWN_S: f64 = 10.0;
@@ -65,7 +65,7 @@ impl TestAnswers {
         executor: &dyn Executor,
     ) -> Result<Self, NoResult> {
         let result = analysis.result(condition)?;
-        let sample_time_s = LEAST_SHOWN_S.max(SHOWN * test.duration_s) / STEPS as f64;
+        let sample_time_s = LEAST_SHOWN_S.max(SHOWN_DURATIONS * test.duration_s) / STEPS as f64;
         let answers = each(executor, &RequirementRole::ALL, |role| {
             let model = analysis
                 .role_model(result, *role)

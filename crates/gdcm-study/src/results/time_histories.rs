@@ -255,7 +255,8 @@ impl TimeHistories {
         }
     }
 
-    /// Returns the outputs with a Theil coefficient.
+    /// Returns the outputs that move in a record: those with a Theil coefficient, which constant
+    /// outputs lack.
     pub fn moved_outputs(&self) -> BTreeSet<&str> {
         self.records
             .iter()

@@ -4,6 +4,7 @@
 //! A *swap* repeats the analysis of a condition with another kept model instead of a representative
 //! (M13.1). A net gain is the product of a response's output and input gain, `k_o k_i`; *scatter*
 //! is its variation over the conditions. The second variable is altitude or mass, besides airspeed.
+//! A *confidence band* encloses the schedule over airspeed, an *error bar* a single value.
 
 use std::collections::BTreeMap;
 
@@ -63,8 +64,8 @@ impl Uncertainty {
     }
 
     /// Returns a value's error bar in a condition.
-    pub fn bar(&self, condition: ConditionId, figure: Scalar) -> Option<&Bar> {
-        self.conditions.get(&condition)?.bars[figure].as_ref()
+    pub fn bar(&self, condition: ConditionId, scalar: Scalar) -> Option<&Bar> {
+        self.conditions.get(&condition)?.bars[scalar].as_ref()
     }
 }
 
@@ -74,7 +75,7 @@ pub struct ConditionUncertainty {
     /// Error bar for each value that exists.
     pub bars: ScalarTable<Option<Bar>>,
     /// Half-width `(Q84 - Q16) / 2` of `ln |H_ref| / |H_sim|` between the representatives, over the
-    /// band: the mismatch that remains after a gain correction.
+    /// frequency band: the mismatch that remains after a gain correction.
     pub left_in_band: PairTable<Option<f64>>,
     /// Swaps from which the error bars are computed.
     pub swaps: ConditionSwaps,
@@ -114,8 +115,8 @@ impl ScheduleBands {
     /// Returns the half-widths about a scheduled value (`ln k` of a channel or net gain) at an
     /// airspeed \[kt\]; `None` without a band, and for a schedule with another number of terms than
     /// the bands have.
-    pub fn at(&self, schedule: &Schedule, figure: Scalar, airspeed_kt: f64) -> Option<BandWidths> {
-        let (_, band) = self.bands.iter().find(|(scalar, _)| *scalar == figure)?;
+    pub fn at(&self, schedule: &Schedule, scalar: Scalar, airspeed_kt: f64) -> Option<BandWidths> {
+        let (_, band) = self.bands.iter().find(|(known, _)| *known == scalar)?;
         let widths = band.at(&schedule.design_row(airspeed_kt));
         if widths.confidence.is_finite() && widths.scatter.is_finite() {
             Some(widths)

@@ -74,9 +74,9 @@ pub enum GainVerdict {
 }
 
 impl GainVerdict {
-    /// Judges a condition's gains: no response constrained; else all matched; else by the first
-    /// unmatched response: a bound, a channel that all unmatched responses share, or a
-    /// contradiction.
+    /// Judges a condition's gains: no response constrained; else all matched; else by the conflict
+    /// of the first unmatched response: a bound; or a contradiction, for which the channel that all
+    /// unmatched responses share is named if there is one.
     pub fn new(result: &ConditionAnalysis) -> Self {
         if result.held().marked().next().is_none() {
             return Self::NoneHeld;
@@ -98,6 +98,7 @@ impl GainVerdict {
                         unmatched: missed.len(),
                         channel,
                     },
+                    // A single entry cannot disagree.
                     None => Self::Disagree {
                         entries: miss.why.entries.len().max(2),
                     },
@@ -161,11 +162,11 @@ impl PhaseVerdict {
         if result.delays.matched {
             return Self::Matched;
         }
-        let mut left_ms = Vec::with_capacity(result.delays.unmatched.len());
+        let mut remaining_ms = Vec::with_capacity(result.delays.unmatched.len());
         for miss in &result.delays.unmatched {
-            left_ms.push(s_to_ms(miss.excess));
+            remaining_ms.push(s_to_ms(miss.excess));
         }
-        Self::LagRemains(RemainingLag::new(&mut left_ms))
+        Self::LagRemains(RemainingLag::new(&mut remaining_ms))
     }
 
     /// Returns the stable code for scripts and tests.
@@ -178,6 +179,10 @@ impl PhaseVerdict {
         }
     }
 }
+
+/// Maximum range of lags that are about equal, relative to their median: as for a common lead
+/// (`lead_remarks`).
+const ABOUT_EQUAL: f64 = 0.5;
 
 /// Lags that the correction leaves \[ms\]; negative values are leads.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -193,13 +198,17 @@ pub enum RemainingLag {
 impl RemainingLag {
     /// Summarises the lags of all responses \[ms\] (at least one), and sorts them: equal as
     /// displayed; else about equal, in a range of at most half the median; else the range.
-    pub fn new(left_ms: &mut [f64]) -> Self {
-        let least = left_ms.iter().copied().fold(f64::INFINITY, f64::min);
-        let most = left_ms.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let middle = median(left_ms);
+    pub fn new(remaining_ms: &mut [f64]) -> Self {
+        let least = remaining_ms.iter().copied().fold(f64::INFINITY, f64::min);
+        let most = remaining_ms
+            .iter()
+            .copied()
+            .fold(f64::NEG_INFINITY, f64::max);
+        let middle = median(remaining_ms);
+        // `telling` formats a number as it is displayed.
         if telling(least, 0) == telling(most, 0) {
             Self::Equal(middle)
-        } else if most - least <= 0.5 * middle.abs() {
+        } else if most - least <= ABOUT_EQUAL * middle.abs() {
             Self::AboutEqual(middle)
         } else if middle >= 0.0 {
             Self::Range([least, most])
@@ -275,11 +284,11 @@ mod tests {
             (&[-5.0, 106.0, 62.0], RemainingLag::Range([-5.0, 106.0])),
             (&[-90.0, -10.0, -30.0], RemainingLag::Range([-10.0, -90.0])),
         ];
-        for (left_ms, expected) in cases {
+        for (remaining_ms, expected) in cases {
             assert_eq!(
-                RemainingLag::new(&mut left_ms.to_vec()),
+                RemainingLag::new(&mut remaining_ms.to_vec()),
                 expected,
-                "{left_ms:?}"
+                "{remaining_ms:?}"
             );
         }
     }

@@ -1,10 +1,15 @@
 //! Distances within each bundle, and discontinuity ratios for the physics bundle (M5).
 //!
-//! A *bundle* holds a condition's physics models or its identified models. The distance between two
-//! of its models is the root of their mean J (M4); the discontinuity ratio of a physics model says
-//! how much larger its distances are than its perturbed trim explains. Rejected models are
-//! included; models *set aside*, which lack a response that another model of the bundle has (M5b),
-//! are not.
+//! ```text
+//! 1  magnitude and phase of the on-axis responses of each model; of all, if none has on-axis ones
+//! 2  models set aside: those that lack a response which another model of the bundle has (M5b)
+//! 3  distance of every two other models: the root of their mean J
+//! 4  physics bundle only: each model's discontinuity ratio
+//! ```
+//!
+//! A *bundle* holds a condition's physics models or its identified models; rejected models are
+//! included. J is the mismatch cost (M4). The *discontinuity ratio* says how much larger a model's
+//! distances are than its perturbed trim explains.
 
 use std::sync::Arc;
 
@@ -24,36 +29,30 @@ use crate::execution::Execution;
 use crate::results::comparison::BundleMetrics;
 
 impl BundleMetrics {
-    /// Computes the distances within both bundles over the responses marked in `measuring`, and the
-    /// discontinuity ratios; reports two progress steps per model. Measured models are compared
-    /// with coherence weights if a minimum coherence is set (M4a).
+    /// Computes the distances within both bundles over the responses marked in `on_axis`, and the
+    /// discontinuity ratios; reports two progress steps per model. Models that are measured
+    /// responses are compared with coherence weights if a minimum coherence is set (M4a).
     ///
     /// # Errors
     /// [`Cancelled`] where `execution` is cancelled.
     pub fn compute(
         condition: &Condition,
         responses: &ConditionResponses,
-        measuring: &PairTable<bool>,
+        on_axis: &PairTable<bool>,
         grid: ComparisonGrid<'_>,
         execution: &Execution<'_>,
     ) -> Result<Self, Cancelled> {
-        let distances = |kind| {
-            let coherence_weights: Vec<Option<PairTable<CoherenceWeights>>> = condition
-                .bundle(kind)
-                .iter()
-                .map(|model| {
-                    CoherenceWeights::of_model(&model.dynamics, grid.grid.omega(), grid.coherence)
-                })
-                .collect();
-            bundle_distance(
-                responses.bundle(kind),
-                &coherence_weights,
-                measuring,
-                execution,
-            )
-        };
-        let physics = distances(BundleKind::Physics)?;
-        let identified = distances(BundleKind::Identified)?;
+        // Steps 1 to 3.
+        let [physics_weights, identified_weights] =
+            BundleKind::BOTH.map(|kind| coherence_weights(condition, kind, grid));
+        let physics = bundle_distance(&responses.physics, &physics_weights, on_axis, execution)?;
+        let identified = bundle_distance(
+            &responses.identified,
+            &identified_weights,
+            on_axis,
+            execution,
+        )?;
+        // Step 4.
         let models: Vec<PerturbedModel<'_>> = condition
             .bundle(BundleKind::Physics)
             .iter()
@@ -75,50 +74,70 @@ impl BundleMetrics {
     }
 }
 
-/// A bundle's frequency responses in polar form, and the output-input pairs in which the models are
-/// compared.
-pub(crate) struct MeasuredBundle {
-    polar: Vec<PolarResponse>,
-    pub(crate) measured: MeasuredPairs,
+/// Returns the coherence weights for each model in a bundle; `None` where coherence is not used.
+fn coherence_weights(
+    condition: &Condition,
+    kind: BundleKind,
+    grid: ComparisonGrid<'_>,
+) -> Vec<Option<PairTable<CoherenceWeights>>> {
+    let mut weights = Vec::new();
+    for model in condition.bundle(kind) {
+        let omega = grid.grid.omega();
+        weights.push(CoherenceWeights::of_model(
+            &model.dynamics,
+            omega,
+            grid.coherence,
+        ));
+    }
+    weights
 }
 
-impl MeasuredBundle {
-    /// Selects each model's marked responses, or all responses if no model has a marked response;
-    /// reports one progress step per model.
+/// A bundle's frequency responses in polar form, and the output-input pairs in which the models are
+/// compared.
+pub(crate) struct ComparableBundle {
+    polar: Vec<PolarResponse>,
+    /// The compared pairs, and those that each model lacks.
+    pub(crate) pairs: MeasuredPairs,
+}
+
+impl ComparableBundle {
+    /// Selects each model's responses marked in `on_axis`, or all responses if no model has a
+    /// marked response (steps 1 and 2); reports one progress step per model.
     ///
     /// # Errors
     /// [`Cancelled`] where `execution` is cancelled.
     pub(crate) fn new(
         responses: &[Arc<FrequencyResponse>],
-        measuring: &PairTable<bool>,
+        on_axis: &PairTable<bool>,
         execution: &Execution<'_>,
     ) -> Result<Self, Cancelled> {
         let polar = execution.each(responses.len(), 1, |model| {
-            PolarResponse::from_marked(&responses[model], measuring)
+            PolarResponse::from_marked(&responses[model], on_axis)
         })?;
-        let measured = MeasuredPairs::new(&polar, measuring);
-        if !measured.compared.is_empty() {
-            return Ok(Self { polar, measured });
+        let pairs = MeasuredPairs::new(&polar, on_axis);
+        if !pairs.compared.is_empty() {
+            return Ok(Self { polar, pairs });
         }
-        let all_pairs = measuring.map(|_, _| true);
+        let all_pairs = on_axis.map(|_, _| true);
+        // The models' steps are already reported.
         let polar = execution.each(responses.len(), 0, |model| {
             PolarResponse::from_marked(&responses[model], &all_pairs)
         })?;
-        let measured = MeasuredPairs::new(&polar, &all_pairs);
-        Ok(Self { polar, measured })
+        let pairs = MeasuredPairs::new(&polar, &all_pairs);
+        Ok(Self { polar, pairs })
     }
 }
 
-/// Computes the distances between all model pairs in a bundle; reports two progress steps per
-/// model.
+/// Computes the distances between every two models in a bundle that are not set aside (steps 1 to
+/// 3); reports two progress steps per model.
 fn bundle_distance(
     responses: &[Arc<FrequencyResponse>],
     coherence_weights: &[Option<PairTable<CoherenceWeights>>],
-    measuring: &PairTable<bool>,
+    on_axis: &PairTable<bool>,
     execution: &Execution<'_>,
 ) -> Result<BundleDistance, Cancelled> {
-    let MeasuredBundle { polar, measured } = MeasuredBundle::new(responses, measuring, execution)?;
-    let compared: Vec<ComparedModel<'_>> = measured
+    let ComparableBundle { polar, pairs } = ComparableBundle::new(responses, on_axis, execution)?;
+    let compared: Vec<ComparedModel<'_>> = pairs
         .compared_models()
         .into_iter()
         .map(|model| ComparedModel {
@@ -127,9 +146,9 @@ fn bundle_distance(
         })
         .collect();
     let rows = execution.each(compared.len(), 1, |index| {
-        distances_from(index, &compared, &measured.compared)
+        distances_from(index, &compared, &pairs.compared)
     })?;
     // Models set aside have no distance row, but count as a step too.
     execution.step(polar.len() - compared.len());
-    Ok(BundleDistance::from_rows(rows, measured))
+    Ok(BundleDistance::from_rows(rows, pairs))
 }

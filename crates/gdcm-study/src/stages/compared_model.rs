@@ -51,7 +51,7 @@ pub(crate) struct ComparedModel {
     /// Why the model lacks a response; `None` where it has the response, even if numerically zero.
     absent: PairTable<Option<Absence>>,
     /// The numerically zero responses (M6a).
-    pub(crate) nothing: PairTable<bool>,
+    pub(crate) numerically_zero: PairTable<bool>,
     /// Frequency weights, where coherence is used.
     coherence_weights: Option<PairTable<CoherenceWeights>>,
 }
@@ -72,8 +72,8 @@ impl ComparedModel {
             Some(_) => None,
             None => Some(Absence::classify(response.curve(pair))),
         });
-        let nothing = polar.numerically_zero();
-        polar.clear(&nothing);
+        let numerically_zero = polar.numerically_zero();
+        polar.clear(&numerically_zero);
         let coherence = match kind {
             BundleKind::Identified => grid.coherence,
             BundleKind::Physics => None,
@@ -82,7 +82,7 @@ impl ComparedModel {
         Self {
             polar,
             absent,
-            nothing,
+            numerically_zero,
             coherence_weights: CoherenceWeights::of_model(dynamics, grid.grid.omega(), coherence),
         }
     }
@@ -122,7 +122,7 @@ pub(crate) fn why_undefined(
         (BundleKind::Identified, identified),
     ];
     for (bundle, model) in models {
-        if model.nothing[pair] {
+        if model.numerically_zero[pair] {
             return Undefined::NumericallyZero(bundle);
         }
     }

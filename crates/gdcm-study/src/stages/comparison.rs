@@ -73,7 +73,7 @@ impl Comparison {
         };
         cautions.extend(input.out_of_range(&compared, &delta));
         cautions.extend(input.coherence_caution(&compared_identified, identified_model));
-        cautions.extend(input.nothing_cautions(&compared));
+        cautions.extend(input.numerically_zero_cautions(&compared));
         Ok(Self {
             physics,
             identified,

@@ -58,7 +58,8 @@ impl ComparisonInput<'_> {
             return Some(Caution::CoherenceNotUsed);
         };
         let points = self.grid.grid.len();
-        let mut weighed = 0;
+        // Responses with a weighted frequency; responses without weight at some, with their number.
+        let mut used = 0;
         let mut left_out: Vec<(Pair, usize)> = Vec::new();
         for (pair, curve) in compared.polar.curves().iter() {
             if curve.is_none() {
@@ -68,7 +69,7 @@ impl ComparisonInput<'_> {
                 continue;
             };
             if count > 0 {
-                weighed += 1;
+                used += 1;
             }
             if count < points {
                 left_out.push((pair, points - count));
@@ -80,14 +81,14 @@ impl ComparisonInput<'_> {
         left_out.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
         Some(Caution::NotCoherent {
             threshold,
-            weighed,
+            weighed: used,
             left_out,
             points,
         })
     }
 
     /// Returns the cautions about the representatives' numerically zero responses (M6a).
-    pub(super) fn nothing_cautions(&self, compared: &ComparedPair<'_>) -> Vec<Caution> {
+    pub(super) fn numerically_zero_cautions(&self, compared: &ComparedPair<'_>) -> Vec<Caution> {
         let mut cautions = Vec::new();
         for (kind, index, model) in [
             (
@@ -101,7 +102,7 @@ impl ComparisonInput<'_> {
                 compared.identified,
             ),
         ] {
-            let responses: Vec<Pair> = model.nothing.marked().collect();
+            let responses: Vec<Pair> = model.numerically_zero.marked().collect();
             if !responses.is_empty() {
                 cautions.push(Caution::NumericallyZero {
                     model: BundleModel::new(self.condition, kind, index),

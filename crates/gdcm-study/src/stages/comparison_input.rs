@@ -49,7 +49,7 @@ impl ComparisonInput<'_> {
                 kind,
                 choice: self.choice.bundle(kind),
                 responses: self.responses,
-                measured: self.metrics.bundle(kind).measured(),
+                pairs: self.metrics.bundle(kind).measured(),
                 band_top: omega.last().copied().unwrap_or_default(),
             };
             cautions.extend(bundle.find());

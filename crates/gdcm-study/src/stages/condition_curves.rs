@@ -22,7 +22,7 @@ pub const CURVE_POINTS: usize = 500;
 const DISPLAY_MARGIN: f64 = 1.7;
 /// Maximum number of stored coupled responses: the previous and the present representative, for a
 /// result and for a variant.
-const KEPT: usize = 4;
+const MOST_STORED: usize = 4;
 
 /// A condition's responses on a grid for drawing.
 #[derive(Debug)]
@@ -65,8 +65,8 @@ impl ConditionCurves {
         }
     }
 
-    /// Returns a physics model's response with the physics parameters and couplings from `result`,
-    /// if any.
+    /// Returns a physics model's response moved by the physics parameters and with the couplings
+    /// from `result`, where it has any.
     pub fn with_couplings(
         &self,
         result: &ConditionAnalysis,
@@ -77,8 +77,8 @@ impl ConditionCurves {
         }
         let physics = result.moved.as_ref().map(|moved| &moved.applied);
         let fitted = result.coupled.as_ref().map(|coupled| &coupled.fitted);
-        let mut kept = self.coupled.lock().unwrap_or_else(PoisonError::into_inner);
-        let known = kept.iter().find(|curve| {
+        let mut stored = self.coupled.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = stored.iter().find(|curve| {
             curve.model == model
                 && are_same(curve.physics.as_ref(), physics)
                 && are_same(curve.fitted.as_ref(), fitted)
@@ -86,22 +86,22 @@ impl ConditionCurves {
         if let Some(curve) = known {
             return Arc::clone(&curve.response);
         }
-        let plain = match &result.moved {
+        let uncoupled = match &result.moved {
             None => Arc::clone(&self.physics[model]),
             Some(_) => {
                 let moved = &result.condition.bundle(BundleKind::Physics)[model];
                 Arc::new(PreparedModel::new(&moved.dynamics).response(&self.grid))
             }
         };
-        let response = Arc::new(result.coupled_response(&plain).into_owned());
-        kept.truncate(KEPT - 1);
+        let response = Arc::new(result.coupled_response(&uncoupled).into_owned());
+        stored.truncate(MOST_STORED - 1);
         let curve = CoupledCurve {
             physics: physics.cloned(),
             fitted: fitted.cloned(),
             model,
             response: Arc::clone(&response),
         };
-        kept.insert(0, curve);
+        stored.insert(0, curve);
         response
     }
 

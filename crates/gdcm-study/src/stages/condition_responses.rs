@@ -39,23 +39,23 @@ pub(crate) struct CoupledResponses {
     couplings: Arc<FittedCouplings>,
     airspeed_kt: f64,
     /// Each model's coupled response, filled on first use; shared by clones.
-    made: Arc<[OnceLock<Arc<FrequencyResponse>>]>,
+    cached: Arc<[OnceLock<Arc<FrequencyResponse>>]>,
 }
 
 impl CoupledResponses {
     /// Creates an empty cache for a bundle with this number of models.
     pub(crate) fn new(couplings: &Arc<FittedCouplings>, airspeed_kt: f64, models: usize) -> Self {
-        let made = (0..models).map(|_| OnceLock::new()).collect();
+        let cached = (0..models).map(|_| OnceLock::new()).collect();
         Self {
             couplings: Arc::clone(couplings),
             airspeed_kt,
-            made,
+            cached,
         }
     }
 
     /// Returns a model's `H~`; `physics` is its uncoupled response.
     fn response(&self, model: usize, physics: &FrequencyResponse) -> Arc<FrequencyResponse> {
-        let coupled = self.made[model].get_or_init(|| {
+        let coupled = self.cached[model].get_or_init(|| {
             let matrices = self.couplings.matrices();
             Arc::new(matrices.response(physics, self.airspeed_kt))
         });
@@ -141,24 +141,18 @@ impl ConditionModels {
 
     /// Returns the hash of a model's dynamics.
     pub(crate) fn content(&self, kind: BundleKind, model: usize) -> ContentHash {
-        let before = if kind == BundleKind::Physics {
-            0
-        } else {
-            self.condition.bundle(BundleKind::Physics).len()
-        };
-        self.models[before + model].content
+        self.hashed_models(kind)[model].content
     }
 
     /// Returns whether the bundles contain the same models with the same names, origins and
     /// dynamics in the same order.
     pub(crate) fn are_the_same_as(&self, other: &Self) -> bool {
-        let [own, others] = [self, other].map(|models| {
-            let contents: Vec<ContentHash> =
-                models.models.iter().map(|model| model.content).collect();
-            let physics = models.condition.bundle(BundleKind::Physics).len();
-            (physics, contents)
+        let have_equal_dynamics = BundleKind::BOTH.into_iter().all(|kind| {
+            let own = self.hashed_models(kind).iter();
+            own.map(|model| model.content)
+                .eq(other.hashed_models(kind).iter().map(|model| model.content))
         });
-        own == others
+        have_equal_dynamics
             && models_of(&self.condition)
                 .zip(models_of(&other.condition))
                 .all(|(a, b)| a.name == b.name && a.origin == b.origin)
@@ -176,30 +170,51 @@ impl ConditionModels {
         grid: &FrequencyGrid,
         execution: &Execution<'_>,
     ) -> Result<ConditionResponses, Cancelled> {
-        let (physics, identified) = self
-            .models
-            .split_at(self.condition.bundle(BundleKind::Physics).len());
-        let bundle = |kind, hashed: &[HashedModel]| {
-            let models = self.condition.bundle(kind);
-            let kept: Option<Vec<Arc<FrequencyResponse>>> = hashed
-                .iter()
-                .map(|model| model.responses.last(purpose).kept(&key).cloned())
-                .collect();
-            if let Some(kept) = kept {
-                execution.step(kept.len());
-                return Ok(kept);
-            }
-            execution.each(models.len(), 1, |index| {
-                let responses = &hashed[index].responses;
-                responses.response(&models[index], purpose, key, grid)
-            })
-        };
-        let identified = bundle(BundleKind::Identified, identified)?;
+        let identified =
+            self.bundle_responses(BundleKind::Identified, purpose, key, grid, execution)?;
+        let physics = self.bundle_responses(BundleKind::Physics, purpose, key, grid, execution)?;
         Ok(ConditionResponses {
-            physics: bundle(BundleKind::Physics, physics)?,
+            physics,
             identified,
             coupled: None,
         })
+    }
+
+    /// Returns a bundle's responses: from the cache if it holds them all, otherwise computed model
+    /// by model; reports one progress step per model.
+    fn bundle_responses(
+        &self,
+        kind: BundleKind,
+        purpose: Purpose,
+        key: GridKey,
+        grid: &FrequencyGrid,
+        execution: &Execution<'_>,
+    ) -> Result<Vec<Arc<FrequencyResponse>>, Cancelled> {
+        let hashed = self.hashed_models(kind);
+        let cached: Option<Vec<Arc<FrequencyResponse>>> = hashed
+            .iter()
+            .map(|model| model.responses.last(purpose).kept(&key).cloned())
+            .collect();
+        if let Some(cached) = cached {
+            execution.step(cached.len());
+            return Ok(cached);
+        }
+        let models = self.condition.bundle(kind);
+        execution.each(models.len(), 1, |index| {
+            let responses = &hashed[index].responses;
+            responses.response(&models[index], purpose, key, grid)
+        })
+    }
+
+    /// Returns a bundle's models with their hashes.
+    fn hashed_models(&self, kind: BundleKind) -> &[HashedModel] {
+        let (physics, identified) = self
+            .models
+            .split_at(self.condition.bundle(BundleKind::Physics).len());
+        match kind {
+            BundleKind::Physics => physics,
+            BundleKind::Identified => identified,
+        }
     }
 
     /// Drops the responses that were computed for drawing.

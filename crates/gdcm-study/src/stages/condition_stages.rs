@@ -3,41 +3,37 @@
 //! ```text
 //! 1  responses of every model                                    (dynamics of the model, grid)
 //! 2  distances within each bundle                                (compared responses, coherence)
-//! 3  representatives, G and D                                    (rejections, pins, averages)
+//! 3  representatives, G and D                                    (`compared_stages`)
 //! 4  with physics parameters: responses of the moved physics models, and stage 3 again
 //! 5  with couplings: responses of the coupled physics models, and stage 3 again
-//! 6  optimal delays and gains                                    (constraints, weights, bounds)
+//! 6  optimal delays and gains                                    (`compared_stages`)
 //! ```
 //!
-//! In brackets: the inputs on which a stage depends. *Moved* physics models are those to which
-//! physics parameters are applied (M18.5), *coupled* ones those with couplings (M16). A *swap*
-//! repeats stages 3 and 6 with another kept model instead of a representative (M13.1).
+//! In brackets: the inputs on which a stage depends, or its file. *Moved* physics models are those
+//! to which physics parameters are applied (M18.5), *coupled* ones those with couplings (M16). A
+//! *swap* repeats stages 3 and 6 with another kept model instead of a representative (M13.1).
 
 use std::sync::Arc;
 
-use gdcm_method::correction::delta::{Delta, GainSource};
+use gdcm_method::correction::delta::Delta;
 use gdcm_method::correction::{Problem, ProofBudget, Solution};
-use gdcm_method::fidelity::CostAverage;
-use gdcm_method::schedule::assessment::assess;
 use gdcm_model::dataset::{BundleKind, Condition, PairTable};
 use gdcm_model::progress::Cancelled;
 
-use super::comparison_input::ComparisonInput;
+use super::compared_stages::{ComparedStages, ComparisonData, MetricsKey};
 use super::condition_responses::{ConditionModels, ConditionResponses, CoupledResponses};
 use super::coupling_fit::CouplingSource;
 use super::known_models::{GridKey, KnownModels, Purpose};
 use super::memo::Memo;
 use super::model_swaps::{SwapInput, SwapMemo, SwapOptimum};
-use super::optima::{NoOptima, Optima, SolveInput, SolvedProblems};
+use super::optima::{NoOptima, SolveInput, SolvedProblems};
 use super::physics_fit::PhysicsSource;
 use super::run::Run;
-use crate::decisions::choices::ConditionChoice;
-use crate::decisions::settings::Settings;
 use crate::execution::Execution;
 use crate::results::analysis::{ConditionAnalysis, ConditionFailure};
 use crate::results::applied_physics::{AppliedPhysics, MovedCondition};
 use crate::results::caution::Caution;
-use crate::results::comparison::{BundleMetrics, Comparison};
+use crate::results::comparison::{BundleMetrics, Comparison, Mismatches};
 use crate::results::fitted_couplings::{CoupledCondition, FittedCouplings};
 use crate::results::model_swap::ConditionSwaps;
 
@@ -48,34 +44,6 @@ pub(crate) const SWAP_PROOF: ProofBudget = ProofBudget {
     listing: 0,
     bytes: 64_000_000,
 };
-
-/// Inputs on which the distances depend, besides the models.
-#[derive(Clone, Debug, PartialEq)]
-struct MetricsKey {
-    grid: GridKey,
-    measuring: PairTable<bool>,
-    coherence: Option<f64>,
-}
-
-impl MetricsKey {
-    fn new(run: Run<'_>) -> Self {
-        Self {
-            grid: run.grid_key(),
-            measuring: run.study.dataset.measuring_pairs(),
-            coherence: run.study.settings.coherence_threshold,
-        }
-    }
-}
-
-/// Inputs on which the comparison of the representatives depends, besides the models.
-#[derive(Clone, Debug, PartialEq)]
-struct ComparisonKey {
-    metrics: MetricsKey,
-    choice: ConditionChoice,
-    average: CostAverage,
-    gain_source: GainSource,
-    couplings: Option<Arc<FittedCouplings>>,
-}
 
 /// Inputs on which coupled responses depend, besides the models.
 #[derive(Clone, Debug, PartialEq)]
@@ -96,7 +64,7 @@ pub(crate) struct ConditionStages {
     /// Stages for the moved physics models without couplings, where the condition has any.
     moved: Option<MovedStages>,
     /// Responses of the physics models with couplings.
-    responses: Memo<CoupledKey, CoupledResponses>,
+    coupled_responses: Memo<CoupledKey, CoupledResponses>,
     /// Stages for the physics models with couplings.
     coupled: ComparedStages,
     swaps: SwapMemo,
@@ -109,25 +77,6 @@ struct MovedStages {
     compared: ComparedStages,
 }
 
-/// Last comparison between a condition's representatives, and the optima based on it.
-#[derive(Clone, Debug, Default)]
-struct ComparedStages {
-    comparison: Memo<ComparisonKey, Result<Arc<Comparison>, ConditionFailure>>,
-    problems: SolvedProblems,
-}
-
-/// A condition's models with the results of stages 1 and 2, from which the comparison (stage 3) and
-/// the optima (stage 6) are computed.
-struct Measured<'a> {
-    run: Run<'a>,
-    condition: Arc<Condition>,
-    /// The responses from which distances and bounds are computed: the on-axis responses, or all
-    /// responses if none is on-axis.
-    measuring: PairTable<bool>,
-    responses: ConditionResponses,
-    metrics: Arc<BundleMetrics>,
-}
-
 impl ConditionStages {
     /// Creates stages without results; responses cached with the models are kept.
     pub(crate) fn new(models: ConditionModels) -> Self {
@@ -137,7 +86,7 @@ impl ConditionStages {
             plain: ComparedStages::default(),
             physics: None,
             moved: None,
-            responses: Memo::default(),
+            coupled_responses: Memo::default(),
             coupled: ComparedStages::default(),
             swaps: SwapMemo::default(),
         }
@@ -174,7 +123,7 @@ impl ConditionStages {
             models: ConditionModels::new(condition, known),
             compared: ComparedStages::default(),
         });
-        self.responses = Memo::default();
+        self.coupled_responses = Memo::default();
         self.coupled = ComparedStages::default();
         self.swaps = SwapMemo::default();
     }
@@ -207,11 +156,11 @@ impl ConditionStages {
     }
 
     /// Computes responses and distances for the models as in the dataset (stages 1 and 2).
-    fn measure<'a>(&mut self, run: Run<'a>) -> Result<Measured<'a>, Cancelled> {
+    fn comparison_data<'a>(&mut self, run: Run<'a>) -> Result<ComparisonData<'a>, Cancelled> {
         let execution = run.execution;
         let condition = Arc::clone(self.models.condition());
         let key = MetricsKey::new(run);
-        let measuring = key.measuring.clone();
+        let on_axis = key.on_axis.clone();
         let responses =
             self.models
                 .responses(Purpose::Comparison, run.grid_key(), run.grid, execution)?;
@@ -221,13 +170,13 @@ impl ConditionStages {
         }
         let metrics = self.metrics.get_or_fail(key, |key| {
             let grid = run.comparison_grid();
-            BundleMetrics::compute(&condition, &responses, &key.measuring, grid, execution)
+            BundleMetrics::compute(&condition, &responses, &key.on_axis, grid, execution)
                 .map(Arc::new)
         })?;
-        Ok(Measured {
+        Ok(ComparisonData {
             run,
             condition,
-            measuring,
+            on_axis,
             responses,
             metrics,
         })
@@ -235,12 +184,15 @@ impl ConditionStages {
 
     /// Replaces the physics models by the moved ones, where the condition has any (stage 4);
     /// distances and suggested outliers still refer to the models in the dataset.
-    fn with_moved_models<'a>(&self, measured: Measured<'a>) -> Result<Measured<'a>, Cancelled> {
+    fn with_moved_models<'a>(
+        &self,
+        data: ComparisonData<'a>,
+    ) -> Result<ComparisonData<'a>, Cancelled> {
         let Some(moved) = &self.moved else {
-            return Ok(measured);
+            return Ok(data);
         };
-        let run = measured.run;
-        // `measure` reports the steps for the models.
+        let run = data.run;
+        // `comparison_data` reports the steps for the models.
         let silent = Execution::new(
             run.execution.executor(),
             run.execution.progress(),
@@ -250,10 +202,10 @@ impl ConditionStages {
             moved
                 .models
                 .responses(Purpose::Comparison, run.grid_key(), run.grid, &silent)?;
-        Ok(Measured {
+        Ok(ComparisonData {
             condition: Arc::clone(moved.models.condition()),
             responses,
-            ..measured
+            ..data
         })
     }
 
@@ -270,12 +222,12 @@ impl ConditionStages {
     /// # Errors
     /// [`Cancelled`] where the run is cancelled.
     pub(crate) fn physics_source(&mut self, run: Run<'_>) -> Result<PhysicsSource, Cancelled> {
-        let measured = self.measure(run)?;
-        let comparison = self.plain.compare(&measured, None);
+        let data = self.comparison_data(run)?;
+        let comparison = self.plain.compare(&data, None);
         run.execution.step(1);
         Ok(PhysicsSource {
-            is_held_out: run.study.choice(measured.condition.id()).held_out,
-            condition: measured.condition,
+            is_held_out: run.study.choice(data.condition.id()).held_out,
+            condition: data.condition,
             comparison,
         })
     }
@@ -289,11 +241,11 @@ impl ConditionStages {
         &mut self,
         run: Run<'_>,
     ) -> Result<Option<CouplingSource>, Cancelled> {
-        let measured = self.measure(run)?;
-        let measured = self.with_moved_models(measured)?;
-        let source = match self.stages_without_couplings().compare(&measured, None) {
+        let data = self.comparison_data(run)?;
+        let data = self.with_moved_models(data)?;
+        let source = match self.stages_without_couplings().compare(&data, None) {
             Err(_) => None,
-            Ok(comparison) => self.source_with_delays(&measured, comparison)?,
+            Ok(comparison) => self.source_with_delays(&data, comparison)?,
         };
         run.execution.step(1);
         Ok(source)
@@ -303,10 +255,10 @@ impl ConditionStages {
     /// without optimal delays.
     fn source_with_delays(
         &mut self,
-        measured: &Measured<'_>,
+        data: &ComparisonData<'_>,
         comparison: Arc<Comparison>,
     ) -> Result<Option<CouplingSource>, Cancelled> {
-        let input = measured.solve_input(&comparison);
+        let input = data.solve_input(&comparison);
         let problem = Arc::new(input.delay_problem(input.lead_design().as_deref()));
         let stages = self.stages_without_couplings();
         let Ok(delays) = stages.problems.delays(&input, &problem)? else {
@@ -316,14 +268,14 @@ impl ConditionStages {
         let identified = comparison.identified.model;
         let models = self.compared_models();
         Ok(Some(CouplingSource {
-            condition: Arc::clone(&measured.condition),
+            condition: Arc::clone(&data.condition),
             delays_s: delays.channels(),
             contents: [
                 models.content(BundleKind::Physics, physics),
                 models.content(BundleKind::Identified, identified),
             ],
-            physics: Arc::clone(&measured.responses.physics[physics]),
-            flight: Arc::clone(&measured.responses.identified[identified]),
+            physics: Arc::clone(&data.responses.physics[physics]),
+            flight: Arc::clone(&data.responses.identified[identified]),
             comparison,
         }))
     }
@@ -347,25 +299,34 @@ impl ConditionStages {
         Ok(outcome)
     }
 
-    /// Computes the condition's result: stages 1 and 2 with the models as in the dataset; stages 3
-    /// and 6 with the moved models, if any, and with the couplings, if any. The comparisons before
-    /// each of these changes (models as in the dataset, models without couplings) are part of the
-    /// result.
+    /// Computes the condition's result:
+    ///
+    /// ```text
+    /// a  stages 1 and 2 with the models as in the dataset
+    /// b  if the condition has moved models: stage 3 with the models as in the dataset, for
+    ///    comparison; then the moved models instead (stage 4)
+    /// c  without couplings: stages 3 and 6
+    ///    with couplings: stage 3 without them, for comparison; then the coupled responses instead
+    ///    (stage 5), and stages 3 and 6
+    /// ```
     fn solve(
         &mut self,
         run: Run<'_>,
         couplings: Option<&Arc<FittedCouplings>>,
     ) -> Result<ConditionAnalysis, NoOptima> {
-        let measured = self.measure(run)?;
-        let moved = self.moved_condition(&measured)?;
-        let mut measured = self.with_moved_models(measured)?;
+        // Step a.
+        let data = self.comparison_data(run)?;
+        // Step b.
+        let moved = self.moved_condition(&data)?;
+        let mut data = self.with_moved_models(data)?;
+        // Step c.
         let stages = self.stages_without_couplings();
         let mut result = match couplings {
-            None => stages.compare_and_solve(&measured, None)?,
+            None => stages.compare_and_solve(&data, None)?,
             Some(fitted) => {
-                let before = stages.compare(&measured, None)?;
-                measured.responses = self.coupled_responses(run, couplings, measured.responses);
-                let result = self.coupled.compare_and_solve(&measured, couplings)?;
+                let before = stages.compare(&data, None)?;
+                data.responses = self.with_couplings(run, couplings, data.responses);
+                let result = self.coupled.compare_and_solve(&data, couplings)?;
                 ConditionAnalysis {
                     coupled: Some(CoupledCondition {
                         before,
@@ -384,12 +345,12 @@ impl ConditionStages {
     /// are not.
     fn moved_condition(
         &mut self,
-        measured: &Measured<'_>,
+        data: &ComparisonData<'_>,
     ) -> Result<Option<MovedCondition>, ConditionFailure> {
         match (&self.moved, &self.physics) {
             (Some(_), Some(applied)) => Ok(Some(MovedCondition {
-                file: Arc::clone(&measured.condition),
-                before: self.plain.compare(measured, None)?,
+                file: Arc::clone(&data.condition),
+                before: self.plain.compare(data, None)?,
                 applied: Arc::clone(applied),
             })),
             _ => Ok(None),
@@ -426,33 +387,22 @@ impl ConditionStages {
             run.grid,
             run.execution,
         )?;
-        let responses = self.coupled_responses(run, couplings, responses);
+        let responses = self.with_couplings(run, couplings, responses);
         let input = SwapInput {
             run,
             analysis,
             responses: &responses,
             couplings,
         };
-        let measuring = run.study.dataset.measuring_pairs();
-        self.swaps.complete(&input, |mismatch, delta| {
-            let input = SolveInput::new(run, &measuring, mismatch, &delta);
-            match SolvedProblems::default().solve(&input) {
-                Ok(optima) => Ok(Some(SwapOptimum {
-                    correction: optima.correction(),
-                    delta: Delta {
-                        gain: optima.gain_problem.delta.clone(),
-                        ..delta
-                    },
-                })),
-                Err(NoOptima::Failed(_)) => Ok(None),
-                Err(NoOptima::Cancelled) => Err(Cancelled),
-            }
+        let on_axis = run.study.dataset.measuring_pairs();
+        self.swaps.complete(&input, |mismatches, delta| {
+            swap_optimum(run, &on_axis, mismatches, delta)
         })
     }
 
     /// Adds the couplings, if any, to the responses (stage 5); coupled responses are computed on
     /// first use. Nothing else applies couplings to a physics model for comparison.
-    fn coupled_responses(
+    fn with_couplings(
         &mut self,
         run: Run<'_>,
         couplings: Option<&Arc<FittedCouplings>>,
@@ -466,149 +416,34 @@ impl ConditionStages {
             couplings: Arc::clone(couplings),
         };
         let airspeed_kt = self.models.condition().flight_state().airspeed_kt;
-        let coupled = self.responses.get(key, |key| {
+        let coupled = self.coupled_responses.get(key, |key| {
             CoupledResponses::new(&key.couplings, airspeed_kt, responses.physics.len())
         });
         responses.with(coupled)
     }
 }
 
-impl Measured<'_> {
-    fn solve_input<'b>(&'b self, comparison: &'b Comparison) -> SolveInput<'b> {
-        SolveInput::new(
-            self.run,
-            &self.measuring,
-            &comparison.representative.mismatch,
-            &comparison.delta,
-        )
+/// Computes the optimal correction after a swap (stage 6), from the mismatches between the two
+/// models and their G and D; `None` if a problem has no solution. Nothing is cached: `SwapMemo`
+/// does that.
+fn swap_optimum(
+    run: Run<'_>,
+    on_axis: &PairTable<bool>,
+    mismatches: &Mismatches,
+    delta: Delta,
+) -> Result<Option<SwapOptimum>, Cancelled> {
+    let input = SolveInput::new(run, on_axis, mismatches, &delta);
+    match SolvedProblems::default().solve(&input) {
+        Ok(optima) => Ok(Some(SwapOptimum {
+            correction: optima.correction(),
+            delta: Delta {
+                gain: optima.gain_problem.delta.clone(),
+                ..delta
+            },
+        })),
+        Err(NoOptima::Failed(_)) => Ok(None),
+        Err(NoOptima::Cancelled) => Err(Cancelled),
     }
-}
-
-impl ComparedStages {
-    /// Compares the representatives (stage 3). They are selected among the models without
-    /// couplings, because a correction must not hide a step of the physics model (M16.3).
-    fn compare(
-        &mut self,
-        measured: &Measured<'_>,
-        couplings: Option<&Arc<FittedCouplings>>,
-    ) -> Result<Arc<Comparison>, ConditionFailure> {
-        let settings = &measured.run.study.settings;
-        let choice = measured.run.study.choice(measured.condition.id());
-        let key = ComparisonKey {
-            metrics: MetricsKey::new(measured.run),
-            choice: choice.of_models(),
-            average: settings.cost_average,
-            gain_source: settings.gain_source,
-            couplings: couplings.cloned(),
-        };
-        let comparison = self.comparison.get(key, |_| {
-            let input = ComparisonInput {
-                condition: &measured.condition,
-                responses: &measured.responses,
-                metrics: &measured.metrics,
-                grid: measured.run.comparison_grid(),
-                choice,
-                average: settings.cost_average,
-            };
-            let comparison = Comparison::compute(&input)?;
-            Ok(Arc::new(match settings.gain_source {
-                GainSource::Representatives => comparison,
-                GainSource::MeanOfPairs => comparison.with_mean_gains(&input),
-            }))
-        })?;
-        check_comparable(&measured.condition, &comparison)?;
-        Ok(comparison)
-    }
-
-    /// Compares the representatives, and computes the optimal delays and gains (stages 3 and 6).
-    fn compare_and_solve(
-        &mut self,
-        measured: &Measured<'_>,
-        couplings: Option<&Arc<FittedCouplings>>,
-    ) -> Result<ConditionAnalysis, NoOptima> {
-        let comparison = self.compare(measured, couplings)?;
-        let settings = &measured.run.study.settings;
-        let input = measured.solve_input(&comparison);
-        let optima = self.problems.solve(&input)?;
-        let correction = optima.correction();
-        let models = &comparison.representative;
-        let cost = Arc::new(assess(
-            &models.mismatch,
-            &models.cost,
-            &correction,
-            measured.run.grid.omega(),
-            settings.cost_average,
-        ));
-        let held = &optima.gain_problem.constrained;
-        let offer = self.problems.offer(&input, held, &cost)?;
-        let cautions = result_cautions(settings, &comparison, &measured.metrics);
-        let Optima {
-            gain_problem,
-            delay_problem,
-            gains,
-            delays,
-            compensated,
-        } = optima;
-        Ok(ConditionAnalysis {
-            condition: Arc::clone(&measured.condition),
-            bundle_metrics: Arc::clone(&measured.metrics),
-            moved: None,
-            coupled: None,
-            comparison,
-            gain_problem,
-            delay_problem,
-            gains,
-            delays,
-            compensated,
-            offer,
-            correction,
-            cost,
-            doubts: Vec::new(),
-            cautions,
-        })
-    }
-}
-
-/// Checks that the representatives can be compared in one response or more.
-fn check_comparable(
-    condition: &Condition,
-    comparison: &Comparison,
-) -> Result<(), ConditionFailure> {
-    if comparison.delta.gain.iter().any(|(_, gain)| gain.is_some()) {
-        return Ok(());
-    }
-    let physics = &condition.bundle(BundleKind::Physics)[comparison.physics.model];
-    let identified = &condition.bundle(BundleKind::Identified)[comparison.identified.model];
-    Err(ConditionFailure::NothingToCompare {
-        physics: physics.name.clone(),
-        identified: identified.name.clone(),
-        cautions: comparison.cautions.clone(),
-    })
-}
-
-/// Collects the cautions about a result: undefined constrained responses, unavailable outlier
-/// suggestions, cautions about the models, unusual gains.
-fn result_cautions(
-    settings: &Settings,
-    comparison: &Comparison,
-    metrics: &BundleMetrics,
-) -> Vec<Caution> {
-    let mut cautions = Vec::new();
-    for pair in settings.constrained.marked() {
-        if let Some(why) = comparison.undefined[pair] {
-            cautions.push(Caution::HeldButUndefined { pair, why });
-        }
-    }
-    if let Err(error) = &metrics.discontinuity {
-        cautions.push(Caution::NoSuggestions(error.clone()));
-    }
-    cautions.extend(comparison.cautions.iter().cloned());
-    for pair in settings.fitted().marked() {
-        if let Some(gain) = comparison.delta.gain[pair] {
-            cautions.extend(Caution::unusual_gain(pair, gain));
-        }
-    }
-    cautions
 }
 
 /// Returns the number of models in both bundles.

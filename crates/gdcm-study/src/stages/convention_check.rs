@@ -5,15 +5,15 @@
 //! W    weight of a frequency, as in J (M4a)
 //! G    ratio of their gains (M6)
 //!
-//! sign  the weighted majority of frequencies has |phi| within 20 deg of half a turn. Attributed to
-//!       the channel of the response with the larger share of responses with
-//!       sum W cos phi < 0
+//! sign  reversed: the weighted majority of frequencies has |phi| within 20 deg of half a turn.
+//!       Attributed to the channel of the response with the larger share of *opposed* responses,
+//!       which match better with the other sign: sum W cos phi < 0
 //! unit  |ln G| > ln 5. Attributed to the channel of the response with the nearer median of ln G;
 //!       all such responses of the channel agree within a factor of 2 of their median
 //! ```
 //!
 //! Every response with a difference counts once, for its output or for its input; the output is
-//! chosen where both are equally likely.
+//! chosen where both are equally likely. The limits are those of M6c (`docs/method.md`).
 
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
@@ -39,7 +39,7 @@ const NEAR_HALF_A_TURN: f64 = 20.0 / 180.0 * PI;
 const USUAL_FACTOR: f64 = 5.0;
 /// Maximum ratio between a single response's factor and its channel's median factor if a unit is
 /// the cause: models differ by this much for other reasons.
-const MOST_SPREAD: f64 = 2.0;
+const LARGEST_RATIO: f64 = 2.0;
 
 /// A condition's mismatches.
 struct Sample<'a> {
@@ -81,7 +81,7 @@ impl Sample<'_> {
     /// Returns whether a response's reversed sign is attributed to this channel rather than to the
     /// response's other channel. The channel with the larger share of opposed responses is chosen;
     /// the output if the shares are equal.
-    fn blames_sign_on(&self, channel: Channel, pair: Pair) -> bool {
+    fn attributes_sign_to(&self, channel: Channel, pair: Pair) -> bool {
         let here = self.opposed_share(channel);
         let there = self.opposed_share(other_channel(channel, pair));
         here > there || (here == there && matches!(channel, Channel::Output(_)))
@@ -90,7 +90,7 @@ impl Sample<'_> {
     /// Returns whether a response's unusual factor is attributed to this channel's unit rather than
     /// to that of the response's other channel. The channel whose median factor is nearer is
     /// chosen; the output if both are equally near.
-    fn blames_factor_on(&self, channel: Channel, pair: Pair, ln_gain: f64) -> bool {
+    fn attributes_factor_to(&self, channel: Channel, pair: Pair, ln_gain: f64) -> bool {
         let distance = |channel| (median(&mut self.ln_gains(channel)) - ln_gain).abs();
         let here = distance(channel);
         let there = distance(other_channel(channel, pair));
@@ -123,15 +123,16 @@ fn weighted_sum(mismatch: &Mismatch, function: impl Fn(f64) -> f64) -> f64 {
 
 /// Returns whether the phase difference is near half a turn at the weighted majority of
 /// frequencies.
-fn is_turned(mismatch: &Mismatch) -> bool {
-    let near = weighted_sum(mismatch, |phase| {
+fn is_reversed(mismatch: &Mismatch) -> bool {
+    let weight_near = weighted_sum(mismatch, |phase| {
         if PI - phase.abs() <= NEAR_HALF_A_TURN {
             1.0
         } else {
             0.0
         }
     });
-    near > 0.5 * weighted_sum(mismatch, |_| 1.0)
+    let whole_weight = weighted_sum(mismatch, |_| 1.0);
+    weight_near > 0.5 * whole_weight
 }
 
 /// Evidence for a difference in a channel, from one condition.
@@ -181,7 +182,9 @@ fn sign_doubt(
         pairs: sample
             .of_channel(channel)
             .filter(|(pair, mismatch)| {
-                measuring[*pair] && is_turned(mismatch) && sample.blames_sign_on(channel, *pair)
+                measuring[*pair]
+                    && is_reversed(mismatch)
+                    && sample.attributes_sign_to(channel, *pair)
             })
             .map(|(pair, _)| pair)
             .collect(),
@@ -208,7 +211,7 @@ fn factor_doubt(
             let ln_gain = gain.ln();
             if measuring[pair]
                 && is_unusual(ln_gain)
-                && sample.blames_factor_on(channel, pair, ln_gain)
+                && sample.attributes_factor_to(channel, pair, ln_gain)
             {
                 pairs.push(pair);
                 ln_gains.push(ln_gain);
@@ -220,15 +223,15 @@ fn factor_doubt(
             is_everywhere: sample.ln_gains(channel).into_iter().all(is_unusual),
         });
     }
-    let factor = median(&mut ln_gains);
+    let ln_factor = median(&mut ln_gains);
     // A unit acts as a single factor: different factors have another cause.
     let is_spread = ln_gains
         .iter()
-        .any(|ln_gain| (ln_gain - factor).abs() > MOST_SPREAD.ln());
+        .any(|ln_gain| (ln_gain - ln_factor).abs() > LARGEST_RATIO.ln());
     if is_spread {
         return None;
     }
-    doubt_from(Convention::Factor(factor.exp()), channel, evidence)
+    doubt_from(Convention::Factor(ln_factor.exp()), channel, evidence)
 }
 
 /// Returns whether a factor exceeds the usual factor, up or down.

@@ -1,13 +1,19 @@
-//! The physics representatives' J without and with a correction to the physics models (couplings or
-//! physics parameters), averaged over the conditions (M16.4, M18.5).
+//! The physics representatives' J without and with a *model correction*, which is couplings or
+//! physics parameters, averaged over the conditions (M16.4, M18.5).
 //!
-//! Both are compared under the same kinds of channel correction: none; each condition's own; the
-//! schedule; and, for conditions left out, the correction and the schedule fitted to the others.
-//! On-axis and off-axis responses are averaged separately.
+//! A *channel correction* gives each input and output channel a gain and a delay. J without and
+//! with the model correction is compared under the same kind of channel correction:
+//!
+//! ```text
+//! none                   the representatives as they are
+//! own                    each condition's optimal channel correction
+//! scheduled              the schedule: channel correction as a function of airspeed (M11)
+//! left out               model correction and schedule fitted to the other conditions
+//! ```
 //!
 //! J measures the mismatch between the physics and the identified representative, smaller is better
-//! (M4). A channel correction gives each channel a gain and a delay; the schedule is this
-//! correction as a function of airspeed (M11).
+//! (M4). On-axis and off-axis responses are averaged separately. In names, `without` and `with`
+//! refer to the model correction.
 
 use gdcm_method::couplings::LeftOutFit;
 use gdcm_method::schedule::CostChange;
@@ -19,80 +25,82 @@ use crate::results::assessment_table::{
 };
 use crate::results::correction_costs::{AxisCost, CorrectionCost, CorrectionCosts};
 
-/// Results for a condition, with couplings and schedule fitted to the others.
+/// Couplings fitted without a condition, and their J in this condition.
 pub(super) struct LeftOutCondition {
     pub(super) fit: LeftOutFit,
     pub(super) cost: LeftOutCost,
 }
 
-/// A condition's J, with the assessed correction and the schedule fitted to the other conditions.
+/// J in a condition, with model correction and schedule fitted to the other conditions.
 pub(super) struct LeftOutCost {
     pub(super) condition: ConditionId,
     pub(super) cost: CorrectionCost,
-    /// J without the assessed correction, response by response.
+    /// J without the model correction, response by response.
     without: PairTable<Option<CostChange>>,
-    /// J with the assessed correction, response by response.
+    /// J with the model correction, response by response.
     with: PairTable<Option<CostChange>>,
 }
 
 impl LeftOutCondition {
-    /// Collects the condition's results; `None` where couplings or schedule cannot be fitted to the
-    /// other conditions, or the condition cannot be assessed.
+    /// Collects the condition's results from the analysis `without` couplings, and from that `with`
+    /// couplings and the condition held out. `None` where couplings or schedule cannot be fitted to
+    /// the other conditions, or the condition cannot be assessed.
     pub(super) fn new(
         condition: ConditionId,
         without: &Analysis,
-        held_out: &Analysis,
+        with_held_out: &Analysis,
     ) -> Option<Self> {
         let fit = LeftOutFit {
             condition,
-            fit: held_out.fitted_couplings()?.fit.clone(),
+            fit: with_held_out.fitted_couplings()?.fit.clone(),
         };
         Some(Self {
             fit,
-            cost: LeftOutCost::new(condition, without, held_out)?,
+            cost: LeftOutCost::new(condition, without, with_held_out)?,
         })
     }
 }
 
 impl LeftOutCost {
-    /// Computes the condition's J under the schedule fitted to the others, without and with the
-    /// assessed correction; `held_out` is the analysis with the correction and the condition held
-    /// out. `None` where the schedule cannot be fitted to the other conditions, or the condition
-    /// cannot be assessed.
+    /// Computes J in the condition under the schedule fitted to the others: from the analysis
+    /// `without` the model correction, whose schedule is fitted again, and from that with it and
+    /// the condition held out, whose schedule is already the others'. `None` where the schedule
+    /// cannot be fitted to the other conditions, or the condition cannot be assessed.
     pub(super) fn new(
         condition: ConditionId,
         without: &Analysis,
-        held_out: &Analysis,
+        with_held_out: &Analysis,
     ) -> Option<Self> {
-        let without_changes = changes(without, condition, AssessedCorrection::ScheduleOfOthers)?;
-        let with_changes = changes(held_out, condition, AssessedCorrection::Scheduled)?;
+        let costs_without =
+            response_costs(without, condition, AssessedCorrection::ScheduleOfOthers)?;
+        let costs_with = response_costs(with_held_out, condition, AssessedCorrection::Scheduled)?;
         let mut sums = CostSums::new(without.study.dataset.on_axis());
-        sums.add(&without_changes, &with_changes);
+        sums.add(&costs_without, &costs_with);
         Some(Self {
             condition,
-            cost: sums.corrected(),
-            without: without_changes,
-            with: with_changes,
+            cost: sums.channel_corrected(),
+            without: costs_without,
+            with: costs_with,
         })
     }
 }
 
-/// Returns the representative's J before and after a correction; `None` if the condition cannot be
-/// assessed.
-fn changes(
+/// Returns the physics representative's J in each response, before and after a channel correction;
+/// `None` if the condition cannot be assessed.
+fn response_costs(
     analysis: &Analysis,
     condition: ConditionId,
-    correction: AssessedCorrection,
+    channel_correction: AssessedCorrection,
 ) -> Option<PairTable<Option<CostChange>>> {
     let choice = AssessmentChoice {
         model: AssessedModel::Representative,
-        correction,
+        correction: channel_correction,
         average: analysis.study.settings.cost_average,
     };
     Some(assessed(analysis, condition, choice).ok()?.changes)
 }
 
-/// Averages J over the conditions, without and with the assessed correction.
+/// Averages J over the conditions, from the analyses without and with the model correction.
 pub(super) fn correction_costs(
     without: &Analysis,
     with: &Analysis,
@@ -106,45 +114,49 @@ pub(super) fn correction_costs(
     }
     CorrectionCosts {
         uncorrected: own.uncorrected(),
-        own: own.corrected(),
-        scheduled: scheduled.corrected(),
+        own: own.channel_corrected(),
+        scheduled: scheduled.channel_corrected(),
         left_out: if left_out.is_empty() {
             None
         } else {
-            Some(left_out_sums.corrected())
+            Some(left_out_sums.channel_corrected())
         },
     }
 }
 
-/// Averages J for an analysis's uncorrected physics representatives.
+/// Averages J over an analysis's physics representatives before any channel correction.
 pub(super) fn uncorrected_cost(analysis: &Analysis) -> AxisCost {
+    // The sums are for two analyses; both are this one.
     cost_sums(analysis, analysis, AssessedCorrection::Own).uncorrected()
 }
 
 /// Sums J under a channel correction over the conditions that can be assessed both without and with
-/// the correction to the physics models.
+/// the model correction.
 fn cost_sums<'a>(
     without: &'a Analysis,
     with: &Analysis,
-    correction: AssessedCorrection,
+    channel_correction: AssessedCorrection,
 ) -> CostSums<'a> {
     let mut sums = CostSums::new(without.study.dataset.on_axis());
     for &id in without.conditions.keys() {
-        let without = changes(without, id, correction);
-        let with = changes(with, id, correction);
-        if let (Some(without), Some(with)) = (without, with) {
-            sums.add(&without, &with);
+        let costs_without = response_costs(without, id, channel_correction);
+        let costs_with = response_costs(with, id, channel_correction);
+        if let (Some(costs_without), Some(costs_with)) = (costs_without, costs_with) {
+            sums.add(&costs_without, &costs_with);
         }
     }
     sums
 }
 
-/// Sum of J over responses.
+/// Sums of J over responses.
 #[derive(Clone, Copy, Default)]
 struct CostSum {
     count: usize,
+    /// Without model and channel correction.
     uncorrected: f64,
+    /// Under the channel correction, without the model correction.
     without: f64,
+    /// Under the channel correction, with the model correction.
     with: f64,
 }
 
@@ -182,7 +194,7 @@ impl<'a> CostSums<'a> {
         }
     }
 
-    /// Adds a condition's responses that can be compared both without and with the correction.
+    /// Adds a condition's responses that can be compared without and with the model correction.
     fn add(
         &mut self,
         without: &PairTable<Option<CostChange>>,
@@ -212,13 +224,13 @@ impl<'a> CostSums<'a> {
         }
     }
 
-    /// Returns the mean J before any correction.
+    /// Returns the mean J without model and channel correction.
     fn uncorrected(&self) -> AxisCost {
         self.means(|sum| sum.uncorrected)
     }
 
-    /// Returns the mean J without and with the correction.
-    fn corrected(&self) -> CorrectionCost {
+    /// Returns the mean J under the channel correction, without and with the model correction.
+    fn channel_corrected(&self) -> CorrectionCost {
         CorrectionCost {
             without: self.means(|sum| sum.without),
             with: self.means(|sum| sum.with),
@@ -264,7 +276,7 @@ mod tests {
                 others: Some(70.0)
             }
         );
-        let found = sums.corrected();
+        let found = sums.channel_corrected();
         assert_eq!(
             found.without,
             AxisCost {

@@ -4,11 +4,10 @@
 //!
 //! ```text
 //! 1  smallest singular value of I - K H, from a tenth of the band's lower end to ten times its
-//!    upper end
+//!    upper end; margin of the loop: its minimum from the band's lower end on
 //! 2  |H~ - H| / |H| in dB at ten times the band's upper end, response by response
 //! 3  poles of every kept physics model, without and with couplings: shifts of the representative,
 //!    newly unstable poles of all
-//! 4  margin of the loop: minimum of step 1 from the band's lower end on
 //! ```
 
 use gdcm_method::correction::Pade;
@@ -68,6 +67,7 @@ pub(super) fn condition_effect(
     let from_band = grid
         .omega()
         .partition_point(|omega| *omega < study.settings.band.min());
+    let margin = LoopMargin::find(&singular_values[from_band..], &grid.omega()[from_band..]);
     // Step 2. The grid's last frequency is ten times the band's upper end.
     let above_band_db = relative_change_db(
         &response,
@@ -76,8 +76,6 @@ pub(super) fn condition_effect(
     );
     // Step 3.
     let poles = condition_poles(study, result, coupled, progress)?;
-    // Step 4.
-    let margin = LoopMargin::find(&singular_values[from_band..], &grid.omega()[from_band..]);
     Ok(ConditionEffect {
         couplings: ConditionCouplings {
             airspeed_kt: result.condition.flight_state().airspeed_kt,

@@ -4,8 +4,8 @@
 //! ```text
 //! 1  analysis without couplings, and with them
 //! 2  fit and schedule without each condition in turn: J of the condition left out
-//! 3  J without and with couplings                        (`correction_costs`)
-//! 4  each condition: moved poles, singular values, change above the band   (`coupling_effects`)
+//! 3  each condition: moved poles, singular values, change above the band   (`coupling_effects`)
+//! 4  J without and with couplings                                          (`correction_costs`)
 //! ```
 //!
 //! Couplings are a mixing of the inputs and a feedback from outputs to inputs, fitted to all
@@ -70,7 +70,7 @@ impl Engine {
         };
         // Step 2.
         let left_out = self.leave_out_each(&without, &with, &fitted, &shares)?;
-        // Step 4.
+        // Step 3.
         let grid = margin_grid(study.settings.band);
         let results: Vec<&ConditionAnalysis> = with.conditions.values().flatten().collect();
         let share = EFFECTS_SHARE / results.len().max(1) as f64;
@@ -104,7 +104,7 @@ impl Engine {
             fitted,
             level: study.settings.uncertainty.level,
             band: study.settings.band,
-            // Step 3.
+            // Step 4.
             costs: correction_costs(&without, &with, &costs_left_out),
             omega: grid.omega().into(),
             conditions,
@@ -133,7 +133,7 @@ impl Engine {
             return Ok(Vec::new());
         }
         let share = LEFT_OUT_SHARE / ids.len() as f64;
-        let found = each(self.executor(), ids, |condition| {
+        let results = each(self.executor(), ids, |condition| {
             let held_out = Edit::SetHeldOut {
                 condition,
                 held_out: true,
@@ -142,6 +142,7 @@ impl Engine {
             if study.apply(&held_out).is_err() {
                 return Ok(None);
             }
+            // As after a model swap: the gains are proven, but no other minima are listed.
             let mut engine = self
                 .fork(Box::new(Sequential))
                 .with_proofs_within(SWAP_PROOF);
@@ -150,7 +151,7 @@ impl Engine {
             portion.finish()?;
             Ok(LeftOutCondition::new(condition, without, &analysis))
         });
-        found.into_iter().filter_map(Result::transpose).collect()
+        results.into_iter().filter_map(Result::transpose).collect()
     }
 }
 

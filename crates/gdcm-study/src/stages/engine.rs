@@ -173,7 +173,7 @@ impl Engine {
         progress: &dyn Progress,
     ) -> Result<Analysis, Cancelled> {
         // Step 1.
-        self.take(&study.dataset);
+        self.switch_to(&study.dataset);
         let grid = FrequencyGrid::logarithmic(study.settings.band, study.settings.points);
         let execution = Execution::new(self.executor.as_ref(), progress, steps(study));
         let run = Run {
@@ -196,7 +196,7 @@ impl Engine {
         // Step 6.
         let settings = schedule_settings(study, &conditions);
         let schedule = Schedule::fit(&scheduled_points(study, &conditions), settings);
-        let apart = signed_delays_apart(study, &conditions);
+        let delay_cautions = signed_delays_apart(study, &conditions);
         let mut analysis = Analysis {
             study: study.clone(),
             omega: grid.omega().into(),
@@ -210,7 +210,7 @@ impl Engine {
             assessment: BTreeMap::new(),
             uncertainty: None,
         };
-        add_schedule_cautions(&mut analysis, apart);
+        add_schedule_cautions(&mut analysis, delay_cautions);
         // Step 7.
         let choice = AssessmentChoice::of_paper(&study.settings);
         let ids: Vec<ConditionId> = study.dataset.ids().collect();
@@ -219,8 +219,8 @@ impl Engine {
         })?;
         analysis.assessment = ids.into_iter().zip(assessment).collect();
         // Step 8.
-        let costs = schedule_cost_cautions(&analysis);
-        add_schedule_cautions(&mut analysis, costs);
+        let cost_cautions = schedule_cost_cautions(&analysis);
+        add_schedule_cautions(&mut analysis, cost_cautions);
         Ok(analysis)
     }
 
@@ -236,7 +236,7 @@ impl Engine {
         progress: &dyn Progress,
     ) -> Result<Uncertainty, Cancelled> {
         let study = &analysis.study;
-        self.take(&study.dataset);
+        self.switch_to(&study.dataset);
         let grid = FrequencyGrid::logarithmic(study.settings.band, study.settings.points);
         // One step for each model's response, and at most one for its swap.
         let total = study
@@ -314,7 +314,7 @@ impl Engine {
         grid: (Band, usize),
         progress: &dyn Progress,
     ) -> Result<Option<Arc<ConditionCurves>>, Cancelled> {
-        self.take(dataset);
+        self.switch_to(dataset);
         if self.drawn != Some(condition) {
             if let Some(before) = self.drawn.replace(condition)
                 && let Some(stages) = self.conditions.get(&before)
@@ -342,7 +342,7 @@ impl Engine {
     }
 
     /// Switches to this dataset; results are kept for content that both datasets contain.
-    fn take(&mut self, dataset: &Arc<Dataset>) {
+    fn switch_to(&mut self, dataset: &Arc<Dataset>) {
         if self
             .dataset
             .as_ref()
@@ -376,7 +376,7 @@ impl Engine {
     }
 }
 
-/// Condition whose result is needed before the others.
+/// Condition whose result is needed before the others: the one in view.
 #[derive(Clone, Copy)]
 pub struct WantedFirst<'a> {
     pub condition: ConditionId,
@@ -385,8 +385,8 @@ pub struct WantedFirst<'a> {
 }
 
 /// Returns an analysis's step count. Conditions to which couplings are fitted count three times:
-/// for the fit's inputs, for the fit, and for the analysis. Each condition counts twice more where
-/// physics parameters are requested.
+/// for the fit's inputs, for the fit, and for the analysis. Where physics parameters are requested,
+/// each condition counts twice more: for the inputs of that fit, and for the fit.
 fn steps(study: &Study) -> usize {
     let has_couplings = study.settings.couplings.kind().is_some();
     let mut steps = 0;
@@ -412,30 +412,27 @@ fn add_schedule_cautions(analysis: &mut Analysis, cautions: Vec<ScheduleCaution>
 /// (M18.5).
 fn fit_physics(
     run: Run<'_>,
-    kept: &mut PhysicsMemo,
+    cache: &mut PhysicsMemo,
     stages: &mut BTreeMap<ConditionId, ConditionStages>,
 ) -> Result<Option<PhysicsOutcome>, Cancelled> {
     if run.study.settings.physics == PhysicsCorrection::Off {
         return Ok(None);
     }
     let execution = run.execution;
-    let mut chosen = Vec::new();
     let mut steps = 0;
     for id in run.study.dataset.ids() {
         if let Some(stages) = stages.get(&id) {
             steps += ConditionStages::steps(stages.models().condition());
         }
     }
-    for stages in stages.values_mut() {
-        chosen.push(stages);
-    }
-    let sources = execution.each_owned(chosen, |stages| stages.physics_source(run))?;
+    let all_stages: Vec<&mut ConditionStages> = stages.values_mut().collect();
+    let sources = execution.each_owned(all_stages, |stages| stages.physics_source(run))?;
     let progress = FitProgress {
         execution,
         steps,
         reported: AtomicUsize::new(0),
     };
-    let applied = kept.apply(run.study, &sources, execution.executor(), &progress)?;
+    let applied = cache.apply(run.study, &sources, execution.executor(), &progress)?;
     // A cached fit reports no progress: its steps are reported here.
     progress.advanced(1, 1);
     Ok(Some(applied))
@@ -456,7 +453,7 @@ fn move_models(
 /// not requested (M16.1).
 fn fit_couplings(
     run: Run<'_>,
-    kept: &mut Memo<CouplingFitKey, CouplingOutcome>,
+    cache: &mut Memo<CouplingFitKey, CouplingOutcome>,
     stages: &mut BTreeMap<ConditionId, ConditionStages>,
 ) -> Result<Option<CouplingOutcome>, Cancelled> {
     let study = run.study;
@@ -464,15 +461,15 @@ fn fit_couplings(
     let Some(kind) = study.settings.couplings.kind() else {
         return Ok(None);
     };
-    let mut chosen = Vec::new();
+    let mut fitted_stages = Vec::new();
     let mut steps = 0;
     for (id, stages) in stages {
         if !study.choice(*id).held_out {
             steps += ConditionStages::steps(stages.models().condition());
-            chosen.push(stages);
+            fitted_stages.push(stages);
         }
     }
-    let sources = execution.each_owned(chosen, |stages| stages.coupling_source(run))?;
+    let sources = execution.each_owned(fitted_stages, |stages| stages.coupling_source(run))?;
     let sources: Vec<CouplingSource> = sources.into_iter().flatten().collect();
     let key = CouplingFitKey::new(study, kind, &sources);
     let progress = FitProgress {
@@ -480,7 +477,7 @@ fn fit_couplings(
         steps,
         reported: AtomicUsize::new(0),
     };
-    let fit = kept.get_or_fail(key, |key| {
+    let fit = cache.get_or_fail(key, |key| {
         key.fit(study, run.grid, &sources, execution.executor(), &progress)
     })?;
     // A cached fit reports no progress: its steps are reported here.

@@ -11,7 +11,8 @@
 //! Steps 3 to 5 need a schedule and the error bars of every scheduled condition. Holm's correction
 //! adjusts probabilities for the number of tests. A *swap* repeats the analysis of a condition with
 //! another kept model instead of a representative (M13.1); the scatter is the variation of a net
-//! gain over the conditions.
+//! gain over the conditions. A `pair` is a response: an output and an input. A `Scalar` names a
+//! value with an error bar, such as the net gain of a pair.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -37,7 +38,8 @@ use crate::results::uncertainty::{
     SecondVariableTest, Uncertainty,
 };
 
-/// Maximum number of differences; with more, none is computed.
+/// Maximum number of differences; with more, none is computed. They grow with the square of the
+/// number of conditions at equal airspeed, and are listed one by one.
 const MOST_DIFFERENCES: usize = 20_000;
 
 impl Uncertainty {
@@ -235,10 +237,10 @@ impl<'a> ScheduleEvidence<'a> {
             let Some(bars) = self.bars(Scalar::NetGain(pair)) else {
                 continue;
             };
-            let figures: Vec<f64> = bars.iter().map(|bar| bar.value).collect();
+            let net_gains: Vec<f64> = bars.iter().map(|bar| bar.value).collect();
             for (variable, design) in SecondVariable::BOTH.into_iter().zip(&designs) {
                 let effect = match design {
-                    Ok(design) => Ok(design.effect(&figures, level)),
+                    Ok(design) => Ok(design.effect(&net_gains, level)),
                     Err(error) => Err(*error),
                 };
                 tests.push(SecondVariableTest {
@@ -291,7 +293,7 @@ fn airspeed_differences(
     if count > MOST_DIFFERENCES {
         return Err(count);
     }
-    let mut found = Vec::new();
+    let mut differences = Vec::new();
     for &pair in pairs {
         for (index, (first, bars_of_first)) in analysed.iter().enumerate() {
             for (second, bars_of_second) in &analysed[index + 1..] {
@@ -304,7 +306,7 @@ fn airspeed_differences(
                 if let (Some(a), Some(b)) =
                     (bars_of_first.bars[scalar], bars_of_second.bars[scalar])
                 {
-                    found.push(AirspeedDifference {
+                    differences.push(AirspeedDifference {
                         pair,
                         conditions: [first.id(), second.id()],
                         airspeed_kt: 0.5 * (a_kt + b_kt),
@@ -315,14 +317,14 @@ fn airspeed_differences(
             }
         }
     }
-    let probabilities: Vec<Option<f64>> = found
+    let probabilities: Vec<Option<f64>> = differences
         .iter()
         .map(|difference| difference.difference.p())
         .collect();
-    for (difference, p) in found.iter_mut().zip(holm_where_known(&probabilities)) {
+    for (difference, p) in differences.iter_mut().zip(holm_where_known(&probabilities)) {
         difference.p_holm = p;
     }
-    Ok(found)
+    Ok(differences)
 }
 
 /// Counts the pairs of conditions at equal airspeed.

@@ -3,6 +3,7 @@
 
 pub mod bundle_metrics;
 pub mod compared_model;
+mod compared_stages;
 pub mod comparison;
 pub mod comparison_cautions;
 pub mod comparison_input;

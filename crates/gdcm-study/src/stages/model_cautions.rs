@@ -7,7 +7,7 @@ use gdcm_model::dataset::{BundleKind, Condition, ConditionId, Dynamics, Pair};
 use gdcm_model::progress::Cancelled;
 use gdcm_model::response::PolarResponse;
 
-use super::bundle_metrics::MeasuredBundle;
+use super::bundle_metrics::ComparableBundle;
 use super::condition_responses::ConditionResponses;
 use crate::decisions::choices::{BundleChoice, ConditionChoice};
 use crate::decisions::study::Study;
@@ -20,7 +20,8 @@ pub(crate) struct BundleCautions<'a> {
     pub(crate) kind: BundleKind,
     pub(crate) choice: &'a BundleChoice,
     pub(crate) responses: &'a ConditionResponses,
-    pub(crate) measured: &'a MeasuredPairs,
+    /// The pairs in which the bundle's models are compared, and those that each model lacks.
+    pub(crate) pairs: &'a MeasuredPairs,
     /// The band's upper end \[rad/s\].
     pub(crate) band_top: f64,
 }
@@ -37,11 +38,12 @@ impl BundleCautions<'_> {
         cautions
     }
 
-    /// Adds the cautions about a model:
+    /// Adds the cautions about a model that is not rejected:
     ///
-    /// 1. measured, with responses that are zero at all measured frequencies;
-    /// 2. set aside, if it lacks responses that another model of the bundle has (M5b); otherwise
-    ///    responses that are not finite in the band.
+    /// 1. if it is a measured response: responses that are zero at all measured frequencies, except
+    ///    those in 2;
+    /// 2. if it lacks responses that another model of the bundle has: it is set aside (M5b);
+    /// 3. otherwise: responses that are not finite in the band.
     fn add_of_model(&self, index: usize, cautions: &mut Vec<Caution>) {
         let model = &self.condition.bundle(self.kind)[index];
         if self.choice.rejected.contains(&model.name) {
@@ -50,16 +52,17 @@ impl BundleCautions<'_> {
         let bundle_model = BundleModel::new(self.condition, self.kind, index);
         let response = &self.responses.bundle(self.kind)[index];
         let zero = response.zero_where_finite();
+        let lacking = self.pairs.lacks[index].clone();
         // A response that is zero at all measured frequencies is absent: it would not be added by a
         // wider measurement.
         let mut not_finite = response.not_finite();
         not_finite.retain(|pair| !zero.contains(pair));
-        let lacks = self.measured.lacks[index].clone();
+        // Case 1.
         if matches!(model.dynamics, Dynamics::Measured(_)) {
             let missing: Vec<Pair> = zero
                 .iter()
                 .copied()
-                .filter(|pair| !lacks.contains(pair))
+                .filter(|pair| !lacking.contains(pair))
                 .collect();
             if !missing.is_empty() {
                 cautions.push(Caution::MissingResponses {
@@ -68,18 +71,19 @@ impl BundleCautions<'_> {
                 });
             }
         }
+        // Cases 2 and 3.
         let why = NotFinite::new(&model.dynamics, self.band_top);
-        if !lacks.is_empty() {
-            let is_not_finite = lacks.iter().any(|pair| not_finite.contains(pair));
+        if !lacking.is_empty() {
+            let is_not_finite = lacking.iter().any(|pair| not_finite.contains(pair));
             cautions.push(Caution::SetAside {
                 model: bundle_model,
-                zero: lacks
+                zero: lacking
                     .iter()
                     .copied()
                     .filter(|pair| zero.contains(pair))
                     .collect(),
                 why: if is_not_finite { Some(why) } else { None },
-                lacks,
+                lacks: lacking,
                 pinned: self.choice.pinned.as_ref() == Some(&model.name),
             });
         } else if !not_finite.is_empty() {
@@ -132,13 +136,13 @@ pub fn cautions_of_models(
         let responses =
             ConditionResponses::compute(condition, (band, study.settings.points), execution)?;
         for kind in BundleKind::BOTH {
-            let bundle = MeasuredBundle::new(responses.bundle(kind), &measuring, execution)?;
+            let bundle = ComparableBundle::new(responses.bundle(kind), &measuring, execution)?;
             let cautions = BundleCautions {
                 condition,
                 kind,
                 choice: choice.bundle(kind),
                 responses: &responses,
-                measured: &bundle.measured,
+                pairs: &bundle.pairs,
                 band_top: band.max(),
             };
             for caution in cautions.find() {

@@ -2,14 +2,15 @@
 //!
 //! ```text
 //! 1  replacing models: the other kept models of each bundle, copies counted once
-//! 2  for each replacement that is not cached: mismatch of the new pair on the phase branch of the
-//!    representatives, its G and D, and the optimal correction
-//! 3  base: the results of the representatives, to which the results of the swaps are compared
-//! 4  spread of the results over the swaps of each bundle
+//! 2  for each replacement that is not cached: mismatch of the two models on the phase branch of
+//!    the representatives, their G and D, and the optimal correction
+//! 3  base: the figures of the representatives, to which those of the swaps are compared
+//! 4  spread of the figures over the swaps of each bundle
 //! ```
 //!
-//! "Figures" are a model pair's gains, as logarithms, and its delays \[s\]. A phase difference is
-//! known up to whole turns; its *branch* is the number of turns chosen (M3).
+//! The *figures* of two models that are compared are the resulting gains, as logarithms, and delays
+//! \[s\]. A phase difference is known up to whole turns; its *branch* is the number of turns chosen
+//! (M3).
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -31,15 +32,15 @@ use crate::results::comparison::Mismatches;
 use crate::results::fitted_couplings::FittedCouplings;
 use crate::results::model_swap::{ConditionSwaps, ModelSwap};
 
-/// A physics and an identified model by their indices.
+/// The two models that are compared, by their indices in the bundles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct ModelPair {
+struct ComparedIndices {
     physics: usize,
     identified: usize,
 }
 
-impl ModelPair {
-    /// Returns the pair with one bundle's model replaced.
+impl ComparedIndices {
+    /// Returns the indices with one bundle's model replaced.
     fn with(self, kind: BundleKind, model: usize) -> Self {
         match kind {
             BundleKind::Physics => Self {
@@ -63,11 +64,11 @@ pub(crate) struct SwapInput<'a> {
     pub(crate) couplings: Option<&'a Arc<FittedCouplings>>,
 }
 
-/// A model pair's optimal correction, with its G and D.
+/// The optimal correction for two models, with their G and D.
 #[derive(Clone, Debug)]
 pub(crate) struct SwapOptimum {
     pub(crate) correction: ChannelCorrection,
-    /// The deltas, with G after the leads.
+    /// G and D; G is what remains after the lead filters.
     pub(crate) delta: Delta,
 }
 
@@ -77,7 +78,7 @@ impl SwapOptimum {
         let correction = &self.correction;
         let delta = &self.delta;
         ScalarTable::from_fn(delta.gain.outputs(), delta.gain.inputs(), |scalar| {
-            let figure = match scalar {
+            let value = match scalar {
                 Scalar::Gain(pair) => delta.gain[pair]?.ln(),
                 Scalar::Delay(pair) => delta.delay_s[pair]?,
                 Scalar::BandDelay(pair) => delta.band_delay_s[pair]?,
@@ -85,16 +86,12 @@ impl SwapOptimum {
                 Scalar::ChannelGain(channel) => correction.gain(channel).ln(),
                 Scalar::ChannelDelay(channel) => correction.delay_s(channel),
             };
-            if figure.is_finite() {
-                Some(figure)
-            } else {
-                None
-            }
+            if value.is_finite() { Some(value) } else { None }
         })
     }
 }
 
-/// Returns the representatives' gains and delays.
+/// Returns the representatives' figures from an analysis.
 pub(crate) fn representative_figures(analysis: &ConditionAnalysis) -> Figures {
     let optimum = SwapOptimum {
         correction: analysis.correction.clone(),
@@ -113,21 +110,22 @@ struct SwapKey {
     settings: Settings,
     measuring: PairTable<bool>,
     /// The representatives, which determine the phase branches.
-    representatives: ModelPair,
+    representatives: ComparedIndices,
     couplings: Option<Arc<FittedCouplings>>,
 }
 
-/// Last swaps, by their models: rejecting or restoring a model does not affect the other models'
-/// swaps.
+/// Figures from the last swaps, by the compared models: rejecting or restoring a model does not
+/// affect the other models' swaps.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SwapMemo {
     key: Option<SwapKey>,
-    kept: BTreeMap<ModelPair, Option<Arc<Figures>>>,
+    /// `None` for models that could not be compared.
+    kept: BTreeMap<ComparedIndices, Option<Arc<Figures>>>,
 }
 
 impl SwapInput<'_> {
-    fn representatives(&self) -> ModelPair {
-        ModelPair {
+    fn representatives(&self) -> ComparedIndices {
+        ComparedIndices {
             physics: self.analysis.comparison.physics.model,
             identified: self.analysis.comparison.identified.model,
         }
@@ -176,6 +174,12 @@ impl SwapInput<'_> {
         }
     }
 
+    /// Returns whether the base must be computed: with G as the mean over all pairs of kept models,
+    /// the analysis's values are not those of the two representatives.
+    fn needs_computed_base(&self) -> bool {
+        self.run.study.settings.gain_source == GainSource::MeanOfPairs
+    }
+
     fn compared(&self, kind: BundleKind, model: usize) -> ComparedModel {
         ComparedModel::new(
             &self.analysis.condition,
@@ -211,18 +215,15 @@ impl SwapMemo {
             }
         }
         let representatives = input.representatives();
-        // With the mean over all pairs, the values for the two representatives differ from the
-        // analysis's values: this pair is computed too, as the reference for the changes.
-        let is_mean = input.run.study.settings.gain_source == GainSource::MeanOfPairs;
-        let mut wanted: Vec<ModelPair> = replacements
+        let mut needed: Vec<ComparedIndices> = replacements
             .iter()
             .map(|(kind, model)| representatives.with(*kind, *model))
             .collect();
-        if is_mean {
-            wanted.push(representatives);
+        if input.needs_computed_base() {
+            needed.push(representatives);
         }
         // Step 2.
-        self.compute_missing(input, wanted, replacements.len(), optimum)?;
+        self.compute_missing(input, needed, replacements.len(), optimum)?;
         let swaps: Vec<ModelSwap> = replacements
             .into_iter()
             .map(|(bundle, model)| ModelSwap {
@@ -232,11 +233,7 @@ impl SwapMemo {
             })
             .collect();
         // Step 3.
-        let base = match (is_mean, self.figures(representatives)) {
-            (false, _) => representative_figures(input.analysis),
-            (true, Some(base)) => Figures::clone(&base),
-            (true, None) => representative_figures(input.analysis).map(|_, _| None),
-        };
+        let base = self.base(input);
         // Step 4.
         let spread = ConditionSpread::new(
             &base,
@@ -246,32 +243,45 @@ impl SwapMemo {
         Ok(ConditionSwaps { spread, swaps })
     }
 
-    /// Computes the results for the pairs that are not cached; `swap_count` is the number of pairs
-    /// that count as steps.
+    /// Returns the figures to which those of the swaps are compared (step 3); all undefined if they
+    /// had to be computed, but could not be.
+    fn base(&self, input: &SwapInput<'_>) -> Figures {
+        let from_analysis = representative_figures(input.analysis);
+        if !input.needs_computed_base() {
+            return from_analysis;
+        }
+        match self.figures(input.representatives()) {
+            Some(computed) => Figures::clone(&computed),
+            None => from_analysis.map(|_, _| None),
+        }
+    }
+
+    /// Computes the figures for the `needed` models that are not cached; `swap_count` of them count
+    /// as steps.
     fn compute_missing(
         &mut self,
         input: &SwapInput<'_>,
-        mut wanted: Vec<ModelPair>,
+        mut needed: Vec<ComparedIndices>,
         swap_count: usize,
         optimum: impl Fn(&Mismatches, Delta) -> Result<Option<SwapOptimum>, Cancelled> + Sync,
     ) -> Result<(), Cancelled> {
-        wanted.retain(|pair| !self.kept.contains_key(pair));
+        needed.retain(|models| !self.kept.contains_key(models));
         input
             .run
             .execution
-            .step(swap_count.saturating_sub(wanted.len()));
-        let figures = swap_figures(input, &wanted, optimum)?;
-        self.kept.extend(wanted.into_iter().zip(figures));
+            .step(swap_count.saturating_sub(needed.len()));
+        let figures = swap_figures(input, &needed, optimum)?;
+        self.kept.extend(needed.into_iter().zip(figures));
         Ok(())
     }
 
-    /// Returns a pair's cached figures; `None` if the pair could not be analysed.
-    fn figures(&self, pair: ModelPair) -> Option<Arc<Figures>> {
-        self.kept.get(&pair).cloned().flatten()
+    /// Returns the cached figures for two models; `None` if they could not be compared.
+    fn figures(&self, models: ComparedIndices) -> Option<Arc<Figures>> {
+        self.kept.get(&models).cloned().flatten()
     }
 }
 
-/// Returns the results after each swap in a bundle.
+/// Returns the figures after each swap in a bundle.
 fn bundle_figures(swaps: &[ModelSwap], bundle: BundleKind) -> Vec<Option<&Figures>> {
     swaps
         .iter()
@@ -280,50 +290,75 @@ fn bundle_figures(swaps: &[ModelSwap], bundle: BundleKind) -> Vec<Option<&Figure
         .collect()
 }
 
-/// Computes the results for each model pair.
+/// Computes the figures for each two models in `needed` (step 2).
 fn swap_figures(
     input: &SwapInput<'_>,
-    pairs: &[ModelPair],
+    needed: &[ComparedIndices],
     optimum: impl Fn(&Mismatches, Delta) -> Result<Option<SwapOptimum>, Cancelled> + Sync,
 ) -> Result<Vec<Option<Arc<Figures>>>, Cancelled> {
-    if pairs.is_empty() {
+    if needed.is_empty() {
         return Ok(Vec::new());
     }
-    let representatives = input.representatives();
-    let physics = input.compared(BundleKind::Physics, representatives.physics);
-    let identified = input.compared(BundleKind::Identified, representatives.identified);
-    let omega = input.run.grid.omega();
-    let base = &input.analysis.comparison.representative.mismatch;
-    let median_phases = base.map(|_, mismatch| {
-        mismatch
-            .as_ref()
-            .map(|mismatch| mismatch.median_phase(omega))
-    });
-    let figures = input.run.execution.each(pairs.len(), 1, |index| {
-        let pair = pairs[index];
-        let mut mismatch = if pair.identified == representatives.identified {
-            let other = input.compared(BundleKind::Physics, pair.physics);
-            other.mismatches(&identified)
-        } else {
-            let other = input.compared(BundleKind::Identified, pair.identified);
-            physics.mismatches(&other)
-        };
-        // As for pinned models, each phase difference is on the branch nearest to the
-        // representatives' phase difference (M13.1).
-        for (pair, entry) in mismatch.iter_mut() {
-            if let Some(median_phase) = median_phases[pair] {
-                *entry = entry
-                    .take()
-                    .map(|entry| entry.align_branch(omega, median_phase));
-            }
-        }
-        let delta = Delta::new(&mismatch, omega);
+    let comparison = SwapComparison::new(input);
+    let figures = input.run.execution.each(needed.len(), 1, |index| {
+        let mismatches = comparison.mismatches(needed[index]);
+        let delta = Delta::new(&mismatches, input.run.grid.omega());
         // No result, as for pinned models without comparable responses.
         if delta.gain.iter().all(|(_, gain)| gain.is_none()) {
             return Ok(None);
         }
-        let optimum = optimum(&mismatch, delta)?;
-        Ok(optimum.map(|optimum| Arc::new(optimum.figures())))
+        let found = optimum(&mismatches, delta)?;
+        Ok(found.map(|found| Arc::new(found.figures())))
     })?;
     figures.into_iter().collect()
+}
+
+/// The representatives, prepared for comparison with the models that replace one of them.
+struct SwapComparison<'i, 'a> {
+    input: &'i SwapInput<'a>,
+    representatives: ComparedIndices,
+    physics: ComparedModel,
+    identified: ComparedModel,
+    /// Median phase difference between the representatives in each response \[rad\].
+    median_phases: PairTable<Option<f64>>,
+}
+
+impl<'i, 'a> SwapComparison<'i, 'a> {
+    fn new(input: &'i SwapInput<'a>) -> Self {
+        let representatives = input.representatives();
+        let omega = input.run.grid.omega();
+        let between_representatives = &input.analysis.comparison.representative.mismatch;
+        Self {
+            input,
+            representatives,
+            physics: input.compared(BundleKind::Physics, representatives.physics),
+            identified: input.compared(BundleKind::Identified, representatives.identified),
+            median_phases: between_representatives
+                .map(|_, mismatch| Some(mismatch.as_ref()?.median_phase(omega))),
+        }
+    }
+
+    /// Computes the mismatches between two models, one of which is a representative. As for pinned
+    /// models, each phase difference is on the branch nearest to the representatives' phase
+    /// difference (M13.1).
+    fn mismatches(&self, models: ComparedIndices) -> Mismatches {
+        let mut mismatches = if models.identified == self.representatives.identified {
+            let other = self.input.compared(BundleKind::Physics, models.physics);
+            other.mismatches(&self.identified)
+        } else {
+            let other = self
+                .input
+                .compared(BundleKind::Identified, models.identified);
+            self.physics.mismatches(&other)
+        };
+        let omega = self.input.run.grid.omega();
+        for (pair, mismatch) in mismatches.iter_mut() {
+            if let Some(median_phase) = self.median_phases[pair] {
+                *mismatch = mismatch
+                    .take()
+                    .map(|mismatch| mismatch.align_branch(omega, median_phase));
+            }
+        }
+        mismatches
+    }
 }

@@ -9,7 +9,8 @@
 //! Without leads, step 2 is skipped and the gains follow from the whole difference. The file also
 //! estimates the benefit of leads that are not requested (`SolvedProblems::offer`). G is the gain
 //! and D the delay that would match a response (M6). A negative delay, which only signed delays
-//! allow, is a lead.
+//! allow, is a lead. In names, *held* responses are the constrained ones; *agreement* is the
+//! tolerance within which constraints that form a loop count as consistent.
 
 use std::sync::Arc;
 
@@ -41,7 +42,7 @@ pub(crate) type Solved = Result<Arc<Solution>, ProblemError>;
 ///
 /// # Errors
 /// [`Cancelled`] where `progress` requests it.
-pub(crate) fn solved(
+pub(crate) fn solve_within(
     problem: &Problem,
     proofs: ProofBudget,
     progress: &dyn Progress,
@@ -130,7 +131,9 @@ impl SolvedProblems {
         let gain_problem = Arc::new(input.gain_problem(compensated.as_deref()));
         let gains = self
             .gains
-            .get_or_fail(Arc::clone(&gain_problem), |problem| input.solved(problem))?;
+            .get_or_fail(Arc::clone(&gain_problem), |problem| {
+                input.solve_problem(problem)
+            })?;
         Ok(Optima {
             gains: gains.map_err(ConditionFailure::Gains)?,
             delays: delays.as_ref().map_err(delay_failure)?.clone(),
@@ -147,12 +150,12 @@ impl SolvedProblems {
         problem: &Arc<Problem>,
     ) -> Result<Solved, Cancelled> {
         self.delays
-            .get_or_fail(Arc::clone(problem), |problem| input.solved(problem))
+            .get_or_fail(Arc::clone(problem), |problem| input.solve_problem(problem))
     }
 
     /// Estimates the benefit of leads, where they are not requested and all constrained responses
     /// need them; `None` otherwise, if the signed delays have no solution, or if J would not fall
-    /// by more than a tenth. `now` is J under the present correction.
+    /// by more than a tenth. `present` is J under the present correction.
     ///
     /// # Errors
     /// [`Cancelled`] where the run is cancelled.
@@ -160,10 +163,10 @@ impl SolvedProblems {
         &mut self,
         input: &SolveInput<'_>,
         held: &PairTable<bool>,
-        now: &PairTable<Option<CostChange>>,
+        present: &PairTable<Option<CostChange>>,
     ) -> Result<Option<LeadOffer>, Cancelled> {
         let settings = input.settings();
-        if settings.phase == PhaseCorrection::Lead || !input.all_want_lead(held) {
+        if settings.phase == PhaseCorrection::Lead || !input.all_need_lead(held) {
             return Ok(None);
         }
         let omega = input.run.grid.omega();
@@ -181,7 +184,7 @@ impl SolvedProblems {
         };
         let progress = input.run.execution.progress();
         let solution = self.offer.get_or_fail(Arc::new(problem), |problem| {
-            solved(problem, ProofBudget::default(), progress)
+            solve_within(problem, ProofBudget::default(), progress)
         })?;
         // Without a solution, leads are not recommended.
         let Ok(solution) = solution else {
@@ -196,7 +199,7 @@ impl SolvedProblems {
         Ok(LeadOffer::new(
             leads,
             &held_mismatch,
-            now,
+            present,
             omega,
             settings.cost_average,
         ))
@@ -245,12 +248,12 @@ impl<'a> SolveInput<'a> {
     }
 
     /// Solves a problem, and proves optimality within the run's budget.
-    fn solved(&self, problem: &Problem) -> Result<Solved, Cancelled> {
-        solved(problem, self.run.proofs, self.run.execution.progress())
+    fn solve_problem(&self, problem: &Problem) -> Result<Solved, Cancelled> {
+        solve_within(problem, self.run.proofs, self.run.execution.progress())
     }
 
     /// Returns whether there are constrained responses, and all need lead.
-    fn all_want_lead(&self, held: &PairTable<bool>) -> bool {
+    fn all_need_lead(&self, held: &PairTable<bool>) -> bool {
         held.marked().next().is_some()
             && held.marked().all(|pair| {
                 let delay_s = self.delta.band_delay_s[pair].unwrap_or_default();

@@ -8,11 +8,10 @@
 //! 4  reruns against the prediction                                      (`rerun_checks`)
 //! ```
 //!
-//! A parameter is a named quantity of the physics model, such as an inertia; its value is found
-//! from *runs*, which are models linearised again with one parameter moved. A *rerun* is a model
-//! with several moved, to check the values (M18.6). J is the mismatch cost (M4). The schedule gives
-//! gains and delays over airspeed. *Without* and *with* refer to the parameters; a condition is *left
-//! out*.
+//! A parameter is a quantity of the physics model, such as an inertia; its value is found from
+//! *runs*, which are models linearised again with one parameter moved. A *rerun* is a model with
+//! several moved, to check the values (M18.6). J is the mismatch cost (M4). The schedule gives
+//! gains and delays over airspeed. *Without* and *with* refer to the parameters.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -78,20 +77,24 @@ impl Engine {
         // Step 2.
         let left_out = self.leave_out_values(&without, &applied, &shares)?;
         let costs_left_out: Vec<&LeftOutCost> = left_out.iter().collect();
+        // Step 3.
+        let costs = correction_costs(&without, &with, &costs_left_out);
+        let moved_uncorrected = uncorrected_cost(&with);
+        let conditions = condition_effects(&without, &with, &left_out);
+        // Step 4.
         let grid = FrequencyGrid::logarithmic(study.settings.band, study.settings.points);
+        let reruns = check_reruns(study, &grid);
         Ok(Some(Ok(Arc::new(PhysicsAssessment {
             correction: physics,
             level: study.settings.uncertainty.level,
             band: study.settings.band,
-            // Step 3.
-            costs: correction_costs(&without, &with, &costs_left_out),
-            moved_uncorrected: uncorrected_cost(&with),
-            conditions: condition_effects(&without, &with, &left_out),
+            costs,
+            moved_uncorrected,
+            conditions,
             omega: Arc::clone(&with.omega),
             couplings_without: without.fitted_couplings().cloned(),
             couplings_with: with.fitted_couplings().cloned(),
-            // Step 4.
-            reruns: check_reruns(study, &grid),
+            reruns,
             applied,
         }))))
     }
@@ -113,7 +116,7 @@ impl Engine {
             return Ok(Vec::new());
         }
         let share = LEFT_OUT_SHARE / ids.len() as f64;
-        let found = each(self.executor(), ids, |condition| {
+        let costs = each(self.executor(), ids, |condition| {
             let Some(study) = study_leaving_out(&without.study, applied, condition) else {
                 return Ok(None);
             };
@@ -126,7 +129,7 @@ impl Engine {
             portion.finish()?;
             Ok(LeftOutCost::new(condition, without, &analysis))
         });
-        found.into_iter().filter_map(Result::transpose).collect()
+        costs.into_iter().filter_map(Result::transpose).collect()
     }
 }
 

@@ -49,7 +49,8 @@ pub(crate) struct PhysicsSource {
 }
 
 impl PhysicsSource {
-    /// Returns whether a physics model is neither rejected nor set aside (M5b).
+    /// Returns whether a physics model is neither rejected nor set aside (M5b). Without a
+    /// comparison, which sets models aside, only rejected models are excluded.
     pub(crate) fn uses(&self, study: &Study, model: &Model) -> bool {
         let kind = BundleKind::Physics;
         match &self.comparison {
@@ -182,6 +183,7 @@ pub(crate) fn find_parameters(
     if conditions.is_empty() {
         return Ok(Err(PhysicsFailure::NoConditions(Box::new(left_out))));
     }
+    // Step 4.
     let problem = fitting.problem(conditions);
     let diagnosis = match diagnose(&problem, executor, progress) {
         Ok(diagnosis) => diagnosis,
@@ -213,6 +215,7 @@ impl Fitting<'_> {
     /// left out.
     fn condition(&mut self, source: &PhysicsSource) -> Option<PhysicsCondition> {
         let id = source.condition.id();
+        // Step 2.
         let is_used = |model: &Model| source.uses(self.study, model);
         let matched = MatchedRuns::new(&source.condition, self.parameters, &is_used);
         for run in &matched.refused {
@@ -221,6 +224,7 @@ impl Fitting<'_> {
                 run: run.clone(),
             });
         }
+        // Steps 1 and 3.
         match self.fitted_condition(source, &matched) {
             Ok(condition) => Some(condition),
             Err(why) => {
@@ -233,12 +237,13 @@ impl Fitting<'_> {
     }
 
     /// Returns a condition's data, or why the condition is left out: held out, not compared, or
-    /// without usable runs.
+    /// without usable runs (steps 1 and 3).
     fn fitted_condition(
         &self,
         source: &PhysicsSource,
         matched: &MatchedRuns<'_>,
     ) -> Result<PhysicsCondition, NotFitted> {
+        // Step 1.
         if source.is_held_out {
             return Err(NotFitted::HeldOut);
         }
@@ -250,6 +255,7 @@ impl Fitting<'_> {
                 });
             }
         };
+        // Step 3.
         let condition = &source.condition;
         let physics = &condition.bundle(BundleKind::Physics)[comparison.physics.model];
         let identified = &condition.bundle(BundleKind::Identified)[comparison.identified.model];

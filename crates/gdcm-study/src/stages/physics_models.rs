@@ -7,17 +7,19 @@
 //! 3  each physics model with the states of the runs' base: A(z), B(z), C(z), D(z)
 //! ```
 //!
-//! z is a parameter's change in plausible standard deviations, the increments are the changes of
-//! the matrices with z. A run is a physics model linearised again with one parameter moved, its
-//! base the same model without. A parameter is *named* if its interval excludes zero and it helps
-//! to predict conditions left out (M18.4).
+//! z is a parameter's change in *plausible* standard deviations, which say how far the parameter
+//! may reasonably be from its value in the model; the increments are the changes of the matrices
+//! with z. A run is a physics model linearised again with one parameter moved, its base the same
+//! model without. A parameter is *named* if its interval excludes zero and it helps to predict
+//! conditions left out (M18.4).
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use gdcm_method::physics::increments::NOTABLE_CURVATURE;
 use gdcm_method::physics::{
-    ConditionIncrements, MatchedRuns, OfferedParameter, ParameterValue, PhysicsError, diagnose,
+    ConditionIncrements, MatchedRuns, OfferedParameter, ParameterValue, PhysicsDiagnosis,
+    PhysicsError, PhysicsProblem, diagnose,
 };
 use gdcm_model::dataset::{BundleKind, Condition, Dynamics, Model};
 use gdcm_model::executor::Executor;
@@ -66,37 +68,60 @@ impl PhysicsMemo {
         };
         let findings = &mut self.findings;
         self.applied.get_or_fail(key, |key| {
-            let application = Application {
-                study,
-                sources,
-                executor,
-                progress,
-            };
+            let mover = ModelMover { study, sources };
             if key.correction == PhysicsCorrection::ByHand {
-                return Ok(application.by_hand());
+                return Ok(mover.move_by_hand());
             }
             let found = findings.get_or_fail(key.findings.clone(), |_| {
                 find_parameters(study, sources, executor, progress)
             })?;
-            match found {
-                Ok(found) => application.fitted(found),
-                Err(failure) => Ok(Err(failure)),
-            }
+            let findings = match found {
+                Ok(findings) => findings,
+                Err(failure) => return Ok(Err(failure)),
+            };
+            let named_fit = match named_problem(study, &findings) {
+                None => None,
+                Some(problem) => match diagnose(&problem, executor, progress) {
+                    Ok(fit) => Some(Arc::new(fit)),
+                    Err(PhysicsError::Cancelled(cancelled)) => return Err(cancelled),
+                    Err(error) => return Ok(Err(PhysicsFailure::Fit(error))),
+                },
+            };
+            Ok(Ok(mover.move_by_fit(findings, named_fit)))
         })
     }
 }
 
-/// Data from which the moved models are made.
-struct Application<'a> {
-    study: &'a Study,
-    sources: &'a [PhysicsSource],
-    executor: &'a dyn Executor,
-    progress: &'a dyn Progress,
+/// Returns the problem of the fit from which the values of the named parameters come: the other
+/// parameters are held at 0, values set by hand stay. `None` if all parameters are applied, whose
+/// values the diagnosis holds, and if no parameter is named or set by hand.
+fn named_problem(study: &Study, findings: &PhysicsFindings) -> Option<PhysicsProblem> {
+    if study.settings.physics != PhysicsCorrection::Named {
+        return None;
+    }
+    let named = findings.diagnosis.named();
+    let mut problem = findings.problem.clone();
+    for (index, value) in problem.parameters.iter_mut().enumerate() {
+        if *value == ParameterValue::Fitted && !named.contains(&index) {
+            *value = ParameterValue::Held(0.0);
+        }
+    }
+    let all_at_zero = problem
+        .parameters
+        .iter()
+        .all(|value| *value == ParameterValue::Held(0.0));
+    if all_at_zero { None } else { Some(problem) }
 }
 
-impl Application<'_> {
+/// Moves a study's physics models.
+struct ModelMover<'a> {
+    study: &'a Study,
+    sources: &'a [PhysicsSource],
+}
+
+impl ModelMover<'_> {
     /// Moves the models by the values set by hand (step 1; nothing is fitted).
-    fn by_hand(&self) -> PhysicsOutcome {
+    fn move_by_hand(&self) -> PhysicsOutcome {
         let settings = &self.study.settings.physics_parameters;
         let parameters = settings.parameters(&self.study.dataset);
         if parameters.is_empty() {
@@ -115,98 +140,73 @@ impl Application<'_> {
                 });
             }
         }
-        Ok(Arc::new(self.applied(values)))
+        Ok(Arc::new(self.move_models(values)))
     }
 
-    /// Moves the models by fitted values (step 1):
-    ///
-    /// - all parameters: the values of the diagnosis;
-    /// - named parameters: the values of another fit in which the others are held at 0 and values
-    ///   set by hand stay; no values if no parameter is named or set by hand.
-    fn fitted(&self, findings: Arc<PhysicsFindings>) -> Result<PhysicsOutcome, Cancelled> {
-        let mut refit = None;
-        if self.study.settings.physics == PhysicsCorrection::Named {
-            let named = findings.diagnosis.named();
-            let mut problem = findings.problem.clone();
-            for (index, value) in problem.parameters.iter_mut().enumerate() {
-                if *value == ParameterValue::Fitted && !named.contains(&index) {
-                    *value = ParameterValue::Held(0.0);
-                }
-            }
-            if !problem
-                .parameters
-                .iter()
-                .all(|value| *value == ParameterValue::Held(0.0))
-            {
-                match diagnose(&problem, self.executor, self.progress) {
-                    Ok(diagnosis) => refit = Some(Arc::new(diagnosis)),
-                    Err(PhysicsError::Cancelled(cancelled)) => return Err(cancelled),
-                    Err(error) => return Ok(Err(PhysicsFailure::Fit(error))),
-                }
-            }
-        }
-        let diagnosis = match (&refit, self.study.settings.physics) {
-            (Some(refit), _) => Some(refit.as_ref()),
-            (None, PhysicsCorrection::Named) => None,
-            (None, _) => Some(&findings.diagnosis),
+    /// Moves the models by fitted values (step 1): by those in `named_fit` or, if all parameters
+    /// are applied, by those in the diagnosis. No values if no parameter is named or set by hand.
+    fn move_by_fit(
+        &self,
+        findings: Arc<PhysicsFindings>,
+        named_fit: Option<Arc<PhysicsDiagnosis>>,
+    ) -> Arc<AppliedPhysics> {
+        let diagnosis = if self.study.settings.physics == PhysicsCorrection::Named {
+            named_fit.as_deref()
+        } else {
+            Some(&findings.diagnosis)
         };
-        let mut values = Vec::new();
-        if let Some(diagnosis) = diagnosis {
-            for (index, parameter) in findings.parameters.iter().enumerate() {
-                values.push(AppliedValue {
-                    parameter: parameter.clone(),
-                    z: diagnosis.fit.z[index],
-                    half_width_sd: diagnosis.parameters[index].half_width,
-                    is_by_hand: matches!(
-                        findings.problem.parameters[index],
-                        ParameterValue::Held(_)
-                    ),
-                });
-            }
-        }
-        Ok(Ok(Arc::new(AppliedPhysics {
-            refit,
+        let values = match diagnosis {
+            Some(diagnosis) => fitted_values(&findings, diagnosis),
+            None => Vec::new(),
+        };
+        let moved = self.move_models(values);
+        Arc::new(AppliedPhysics {
+            refit: named_fit,
             findings: Some(findings),
-            ..self.applied(values)
-        })))
+            ..moved
+        })
     }
 
     /// Moves every condition's models by `values` that are not zero (steps 2 and 3).
-    fn applied(&self, mut values: Vec<AppliedValue>) -> AppliedPhysics {
+    fn move_models(&self, mut values: Vec<AppliedValue>) -> AppliedPhysics {
         values.retain(|value| value.z != 0.0);
         let mut conditions = BTreeMap::new();
         let mut dataset = Arc::clone(&self.study.dataset);
         if !values.is_empty() {
             for source in self.sources {
-                let (moved, outcome) = match self.moved_condition(source, &values) {
-                    Ok(moved) => (Some(moved.condition), moved.outcome),
-                    Err(omission) => (None, omission),
+                let outcome = match self.moved_condition(source, &values) {
+                    Ok(moved) => {
+                        if let Ok(with_moved) = dataset.with_condition(moved.condition) {
+                            dataset = Arc::new(with_moved);
+                        }
+                        moved.outcome
+                    }
+                    Err(unmoved) => unmoved,
                 };
-                if let Some(moved) = moved
-                    && let Ok(with_moved) = dataset.with_condition(moved)
-                {
-                    dataset = Arc::new(with_moved);
-                }
                 conditions.insert(source.condition.id(), outcome);
             }
         }
-        let known = OfferedParameter::list(&self.study.dataset);
-        let settings = &self.study.settings.physics_parameters;
-        let unknown = settings
-            .by_hand
-            .keys()
-            .filter(|name| known.iter().all(|parameter| parameter.name != **name))
-            .cloned()
-            .collect();
         AppliedPhysics {
             correction: self.study.settings.physics,
             findings: None,
             refit: None,
             values,
-            unknown,
+            unknown: self.unknown_parameters(),
             conditions,
             dataset,
         }
+    }
+
+    /// Returns the parameters with a value set by hand that the dataset lacks, by name.
+    fn unknown_parameters(&self) -> Vec<String> {
+        let offered = OfferedParameter::list(&self.study.dataset);
+        let mut unknown = Vec::new();
+        for name in self.study.settings.physics_parameters.by_hand.keys() {
+            if offered.iter().all(|parameter| parameter.name != *name) {
+                unknown.push(name.clone());
+            }
+        }
+        unknown
     }
 
     /// Moves a condition's physics models (steps 2 and 3); parameters whose effect is notably
@@ -238,7 +238,8 @@ impl Application<'_> {
         }
         let MovedBundle { models, kept } = moved_bundle(&source.condition, &increments, &z);
         let condition = source.condition.with_physics(models).map_err(|_| {
-            // The models keep names, roles and shapes; this cannot happen.
+            // Does not occur, because the models keep their names, roles and shapes. The dataset's
+            // models would stay.
             MovedModels::Moved {
                 kept: Vec::new(),
                 bends: Vec::new(),
@@ -249,6 +250,20 @@ impl Application<'_> {
             outcome: MovedModels::Moved { kept, bends },
         })
     }
+}
+
+/// Returns the fitted values, in the order of the parameters that are on.
+fn fitted_values(findings: &PhysicsFindings, diagnosis: &PhysicsDiagnosis) -> Vec<AppliedValue> {
+    let mut values = Vec::new();
+    for (index, parameter) in findings.parameters.iter().enumerate() {
+        values.push(AppliedValue {
+            parameter: parameter.clone(),
+            z: diagnosis.fit.z[index],
+            half_width_sd: diagnosis.parameters[index].half_width,
+            is_by_hand: matches!(findings.problem.parameters[index], ParameterValue::Held(_)),
+        });
+    }
+    values
 }
 
 /// A condition with moved models, and the models that keep their response.

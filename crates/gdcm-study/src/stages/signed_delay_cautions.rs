@@ -1,4 +1,5 @@
-//! Cautions about signed delays that no schedule can reproduce (M15.6).
+//! Cautions about signed delays that no schedule can reproduce; the limits are those in M15.6. A
+//! negative signed delay is a lead.
 
 use gdcm_method::correction::Channel;
 use gdcm_method::correction::channel_leads::ChannelLeads;
@@ -12,7 +13,8 @@ use crate::results::scheduled_conditions::in_schedule;
 /// Maximum distance \[s\] between a signed delay and its mean over the conditions that a schedule
 /// can reproduce.
 const APART_S: f64 = 0.02;
-/// Signed delays of smaller magnitude than this \[s\] have no significant sign.
+/// Signed delays of smaller magnitude than this \[s\] are negligible, so that their sign says
+/// nothing.
 const LEAST_DELAY_S: f64 = 2e-3;
 
 /// Returns cautions about the channels for which no schedule can reproduce the signed delays in all
@@ -29,9 +31,9 @@ pub(crate) fn signed_delays_apart(study: &Study, outcomes: &Outcomes) -> Vec<Sch
         .collect()
 }
 
-/// Returns the caution about a channel, which names the condition farthest from the mean, with the
-/// mean over the other conditions. There is a caution if this condition's distance is too large, or
-/// if some conditions need a lead and others a delay; none for fewer than two conditions.
+/// Returns the caution about a channel, which names the condition farthest from the mean. There is
+/// a caution if this condition's distance is too large, or if some conditions need a lead and
+/// others a delay; none for fewer than two conditions.
 fn signed_delay_apart(
     leads: &[(ConditionId, &ChannelLeads)],
     channel: Channel,
@@ -56,6 +58,7 @@ fn signed_delay_apart(
             channel,
             condition: leads[farthest].0,
             tau_s,
+            // The mean over the other conditions.
             elsewhere_s: (sum_s - tau_s) / (taus_s.len() as f64 - 1.0),
         })
     } else {

@@ -1,15 +1,16 @@
-//! Computes standard deviations for a model's responses (M14.5).
+//! Computes standard deviations for a model's responses over frequency, its *bands* (M14.5).
 //!
 //! ```text
-//! var Re(dH/H), Im(dH/H) = h' Cov h, h the real or imaginary part of the gradient of ln H_oi,
-//!     dH = [C R, I] d[A B; C D] [R B; I],  R = (j omega I - A)^-1
-//!     H_oi response of output o to input i,  Cov covariance of the parameters (`covariance`)
-//! sd^2 = 2 (sd_GN^2 + sd_order^2) + |G_b/G|^2 / 2
-//!     sd_GN^2 = that variance, from the fit alone
-//!     sd_order = rms of Re and Im ln(H_n'/H_n) over neighbouring orders n': on each side of n the
-//!        nearest order whose BIC is within 10 % (`order`)
-//!     |G_b/G| the fed-back share of the response (`feedback`; M14.14, M14.17)
-//! real part: log modulus in neper, imaginary part: phase in radians;   each sd at most 1e3
+//! ln H_oi = log modulus [neper] + j phase [rad],   H_oi response of output o to input i
+//! sd^2 = 2 (sd_fit^2 + sd_order^2) + |G_b/G|^2 / 2,   for modulus and phase alike; at most 1e3
+//!
+//! 1  sd_fit^2 = h' Cov h from the fit alone: Cov covariance of the parameters (`covariance`),
+//!    h real (modulus) or imaginary part (phase) of the gradient of ln H_oi, that is of dH_oi/H_oi:
+//!    dH = [C R, I] d[A B; C D] [R B; I],   R = (j omega I - A)^-1
+//! 2  sd_order = rms of the real or imaginary part of ln(H_n'/H_n) over neighbouring orders n': on
+//!    each side of n the nearest order whose BIC is within 10 % (`order`)
+//! 3  |G_b/G| the fed-back share of the response, half of its square for modulus and phase each
+//!    (`feedback`; M14.14, M14.17)
 //! ```
 //!
 //! The factor 2 was measured: with it, 95 % of the true curves lie within 95 % bands.
@@ -29,7 +30,8 @@ use crate::likelihood::schur_model::SchurModel;
 pub const TWO_SIDED_95: f64 = 1.96;
 /// Factor on the variances from the fit and between orders, found by measurement (M14.5).
 pub(crate) const MEASURED_FACTOR: f64 = 2.0;
-/// Largest standard deviation that is reported, in neper and radians.
+/// Largest standard deviation that is reported, in neper and radians; it also replaces intermediate
+/// values that are not finite, because any large number says the same.
 pub(crate) const UNKNOWN: f64 = 1e3;
 
 /// A model, and the sources of its uncertainty besides the fit.
@@ -81,7 +83,8 @@ impl BandModels<'_> {
     ) -> PairBands {
         let count = points.len();
         let order = self.model.order();
-        // At each frequency, left is [C R, I]_o / H_oi and right is [R B; I]_i.
+        // Step 1: dH_oi/H_oi = left' d[A B; C D] right at each frequency, with [C R, I]_o / H_oi on
+        // the left and [R B; I]_i on the right.
         let mut left = DMatrix::zeros(order + self.model.c().nrows(), count);
         let mut right = DMatrix::zeros(order + self.model.b().ncols(), count);
         for (k, point) in points.iter().enumerate() {
@@ -99,6 +102,7 @@ impl BandModels<'_> {
             sd_db: Vec::with_capacity(count),
             sd_deg: Vec::with_capacity(count),
         };
+        // Steps 2 and 3.
         for (point, variance) in points.iter().zip(variances) {
             let between_orders = point.order_variance[(pair.output, pair.input)];
             let fed_back = match self.feedback {
@@ -138,8 +142,10 @@ impl ResponsePoint {
         let mut output_resolvent = DMatrix::zeros(model.c().nrows(), model.order());
         model.output_resolvent(omega, output_resolvent.as_mut_slice());
         let inputs = model.b().ncols();
-        let unit = DMatrix::identity(inputs, inputs);
-        let states = model.states(&vec![omega; inputs], &unit, &DVector::zeros(model.order()));
+        // The states for a unit input in each channel, without transient.
+        let unit_inputs = DMatrix::identity(inputs, inputs);
+        let no_transient = DVector::zeros(model.order());
+        let states = model.states(&vec![omega; inputs], &unit_inputs, &no_transient);
         let count = models.neighbours.len() as f64;
         let mut order_variance = DMatrix::zeros(response.nrows(), response.ncols());
         for neighbour in models.neighbours {

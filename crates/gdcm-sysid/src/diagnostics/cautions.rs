@@ -224,14 +224,14 @@ impl IdentificationCaution {
                     records.iter().any(|wrong| wrong.record == *record)
                 }
                 Self::Reweighed(_) | Self::LeavesPoints { .. } => true,
-                Self::NotSwept { .. } => records.iter().any(has_turned_sign),
+                Self::NotSwept { .. } => records.iter().any(has_reversed_sign),
                 _ => false,
             },
             Self::Records(RecordCaution::Spike { record, signal, .. }) => match other {
                 Self::UnlikeRecord { name, .. } => name == record,
                 Self::Inadequate { record: worst, .. } => worst == record,
                 Self::Contradiction { records, .. } => {
-                    common_code(records) == "record"
+                    common_code(records) == UNSPECIFIC_FAULT
                         && records.iter().any(|wrong| wrong.name == *record)
                 }
                 Self::Vibration {
@@ -318,28 +318,31 @@ impl IdentificationCaution {
 }
 
 /// Returns whether a record's most likely fault is a reversed sign.
-fn has_turned_sign(record: &ContradictingRecord) -> bool {
+fn has_reversed_sign(record: &ContradictingRecord) -> bool {
     matches!(record.fault, Some(RecordFault::Gain(_, factor)) if factor < 0.0)
 }
 
-/// Returns the caution code for a record's fault; `record` for a wrong scale or an unknown fault.
+/// Caution code for a contradicting record whose fault is a wrong scale, or unknown.
+const UNSPECIFIC_FAULT: &str = "record";
+
+/// Returns the caution code for a record's fault.
 fn fault_code(record: &ContradictingRecord) -> &'static str {
     match &record.fault {
         Some(RecordFault::OutputsLate(_) | RecordFault::Late(..)) => "time-skew",
         Some(RecordFault::Gain(_, factor)) if *factor < 0.0 => "sign",
-        _ => "record",
+        _ => UNSPECIFIC_FAULT,
     }
 }
 
-/// Returns the caution code that the faults of all `records` share, else `record`.
+/// Returns the caution code that the faults of all `records` share, else [`UNSPECIFIC_FAULT`].
 fn common_code(records: &[ContradictingRecord]) -> &'static str {
     let Some(code) = records.first().map(fault_code) else {
-        return "record";
+        return UNSPECIFIC_FAULT;
     };
     if records.iter().all(|record| fault_code(record) == code) {
         code
     } else {
-        "record"
+        UNSPECIFIC_FAULT
     }
 }
 

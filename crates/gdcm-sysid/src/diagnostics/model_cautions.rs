@@ -9,10 +9,10 @@ use super::record_fits::{RecordFit, RecordFits};
 use crate::likelihood::descent::Fit;
 use crate::options::Options;
 
-/// Cost per degree of freedom above which a model is not adequate; 1 if only noise remains.
+/// Cost per degree of freedom above which a model is not adequate (M14.6); 1 if only noise remains.
 const ADEQUATE: f64 = 1.5;
 /// Ratio between a record's cost per degree of freedom and that over all fitted records above which
-/// the record is unlike the others.
+/// the record is unlike the others: the ratio from which records are weighed by their own noise.
 const UNLIKE: f64 = 1.5;
 /// Normalised cost up to which held-out records are predicted well. See [`NOT_PREDICTED`].
 pub const PREDICTED_WELL: f64 = 1.3;
@@ -63,7 +63,7 @@ impl ModelCautions<'_> {
                 record: self.record_name(worst.record),
                 signal: self
                     .options
-                    .signal(ChannelSide::Output, place_of_greatest(&fits.outputs)),
+                    .signal(ChannelSide::Output, last_index_of_maximum(&fits.outputs)),
             });
         }
         for fit in fitted {
@@ -136,7 +136,7 @@ impl ModelCautions<'_> {
 }
 
 /// Returns the last index of the maximum; 0 if `values` is empty.
-fn place_of_greatest(values: &[f64]) -> usize {
+fn last_index_of_maximum(values: &[f64]) -> usize {
     let greatest = values.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1));
     greatest.map_or(0, |(place, _)| place)
 }

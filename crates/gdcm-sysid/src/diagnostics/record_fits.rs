@@ -2,7 +2,8 @@
 //!
 //! `J` is the weighted square of the residual over the spectral lines (`cost`); per degree of
 //! freedom it is 1 if only noise remains. A *held-out* record is not fitted, but reserved for
-//! validation.
+//! validation. Its *normalised* cost is that with the model free to move within its uncertainty:
+//! a short fit that predicts a loud record badly need not be wrong (M14.17).
 
 use nalgebra::{Complex, DMatrix};
 
@@ -73,8 +74,9 @@ impl RecordFits {
         }
         let cost = mean_cost(&records)?;
         let held_out = fits_of_records(held_out_records, model, &held_out_parts, true);
-        let moved = covariance.moved_cost(held_out_records, model, &held_out_parts);
-        let held_out_cost = held_out_cost(&held_out, moved);
+        let normalised =
+            covariance.cost_within_uncertainty(held_out_records, model, &held_out_parts);
+        let held_out_cost = held_out_cost(&held_out, normalised);
         records.extend(held_out);
         records.sort_by_key(|fit| fit.record);
         Some(Self {
@@ -86,13 +88,13 @@ impl RecordFits {
     }
 }
 
-/// Divides held-out costs by their degrees of freedom; `moved` is the total cost with the model
-/// moved within its uncertainty; without it, `normalised` is `raw`.
-fn held_out_cost(held_out: &[RecordFit], moved: Option<f64>) -> Option<HeldOutCost> {
+/// Divides held-out costs by their degrees of freedom; `total_normalised` is the total cost with
+/// the model free to move within its uncertainty; without it, `normalised` is `raw`.
+fn held_out_cost(held_out: &[RecordFit], total_normalised: Option<f64>) -> Option<HeldOutCost> {
     let raw = mean_cost(held_out)?;
     let freedom: usize = held_out.iter().map(|fit| fit.freedom).sum();
-    let normalised = match moved {
-        Some(moved) => moved / freedom as f64,
+    let normalised = match total_normalised {
+        Some(total) => total / freedom as f64,
         None => raw,
     };
     Some(HeldOutCost { raw, normalised })
@@ -139,7 +141,7 @@ fn mean_cost(fits: &[RecordFit]) -> Option<f64> {
 }
 
 /// Computes `J` per degree of freedom for each output: `sum |E_o|^2 / (Cv_oo / 2)` over its share
-/// of the degrees of freedom.
+/// of the degrees of freedom; E is the residual in output units, Cv the noise covariance.
 fn output_costs(likelihood: &Likelihood, model: &SchurModel, parts: &[SegmentCost]) -> Vec<f64> {
     let outputs = model.c().nrows();
     let freedom = likelihood.freedom(model.order()) as f64 / outputs as f64;

@@ -2,7 +2,8 @@
 //!
 //! The *bands* are the standard deviations of the responses over frequency. A *reference* is a
 //! recorded signal that drove the loop from outside (M14.15); the lines *as logged* are those not
-//! measured through it. *Reweighing* weighs each record by its own noise (`noise_weights`).
+//! measured through it, from which `PreparedData::direct` is computed. *Reweighing* weighs each
+//! record by its own noise (`noise_weights`).
 
 use nalgebra::Complex;
 
@@ -118,10 +119,10 @@ impl Assessment<'_> {
         })
     }
 
-    /// Returns whether no reference was used. With a reference there is no feedback to measure, and
-    /// all records are measured through the same reference.
-    fn is_direct(&self) -> bool {
-        self.options.references == 0
+    /// Returns whether a reference was used. There is then no feedback to measure, and all records
+    /// are measured through the same reference, so that they are not compared with each other.
+    fn has_reference(&self) -> bool {
+        self.options.references > 0
     }
 
     /// Computes covariance, feedback and bands.
@@ -150,7 +151,7 @@ impl Assessment<'_> {
         let mut bands = models
             .bands(logged.as_ref().unwrap_or(&covariance), &omegas, executor)
             .ok_or_else(|| self.data.no_model())?;
-        if !self.is_direct() {
+        if self.has_reference() {
             bands = self
                 .data
                 .measured
@@ -170,12 +171,12 @@ impl Assessment<'_> {
     /// hides the feedback, or if it cannot be measured.
     fn feedback(&self) -> Option<Feedback> {
         let mut cautions = self.data.cautions.iter();
-        if !self.is_direct() || cautions.any(IdentificationCaution::is_of_collinear_inputs) {
+        if self.has_reference() || cautions.any(IdentificationCaution::is_of_collinear_inputs) {
             return None;
         }
         let records = FeedbackRecords {
             segments: &self.data.unfiltered,
-            lines: self.data.lines,
+            lines: self.data.measured_range,
             band: self.options.band,
             coherence: self.data.measured.excitation().greatest_coherence(),
         };
@@ -190,7 +191,7 @@ impl Assessment<'_> {
     ///
     /// The fit before reweighting is used, because the weights hide which record is wrong.
     fn contrasts(&self) -> Result<Option<RecordContrasts<'_>>, IdentificationError> {
-        if !self.is_direct() {
+        if self.has_reference() {
             return Ok(None);
         }
         let fit = self
@@ -295,7 +296,7 @@ fn feedback_caution(feedback: Option<&Feedback>) -> Option<IdentificationCaution
     })
 }
 
-/// Returns the (output, input) pairs whose standard deviation in mid-band exceeds 3 dB.
+/// Returns the (output, input) pairs whose standard deviation in mid-band exceeds 3 dB (M14.5).
 fn not_identified(bands: &ModelBands) -> Vec<(usize, usize)> {
     let sd_db = bands.sd_db();
     let middle = bands.omega().len() / 2;

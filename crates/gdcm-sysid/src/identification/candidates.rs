@@ -22,12 +22,12 @@ use crate::subspace::stabilisation::PolesOfOrder;
 use crate::subspace::triangular_factor::TriangularFactor;
 use crate::subspace::tried_orders::SPACING;
 
-/// Highest order at which poles and past windows are compared.
+/// Highest order at which poles and past windows are compared (M14.3, M14.13).
 const RANKING_ORDER: usize = 18;
-/// Number of pairs (pole, past window) that propose models of all orders.
-const KEPT: usize = 2;
+/// Number of pairs (pole, past window) that propose models of all orders (M14.3).
+const BEST_CANDIDATES: usize = 2;
 /// Modes faster than this many times the upper end of the band are artefacts: they come from
-/// eigenvalues of `Ao` near -1 (`continuous_model`).
+/// eigenvalues near -1 of the matrix that advances the Laguerre projections (`continuous_model`).
 const FASTEST: f64 = 8.0;
 /// The candidates' share of the total progress.
 const SHARE: f64 = 0.2;
@@ -82,12 +82,12 @@ impl SubspaceSettings {
         };
         let numbers = 0..self.poles.len();
         let mut candidates = Vec::new();
-        for of_pole in each(likelihood.executor, numbers, |k| ranking.rank_pole(k)) {
-            candidates.extend(of_pole?);
+        for candidates_of_pole in each(likelihood.executor, numbers, |k| ranking.rank_pole(k)) {
+            candidates.extend(candidates_of_pole?);
         }
         // Step 3.
         candidates.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-        candidates.truncate(KEPT);
+        candidates.truncate(BEST_CANDIDATES);
         Ok(candidates)
     }
 
@@ -200,12 +200,12 @@ impl<'r> Ranking<'r> {
         };
         let factor = projections.factor(self.segments, executor);
         let mut candidates = Vec::new();
-        let of_pasts = each(executor, &self.settings.pasts, |&past| {
+        let candidates_of_pasts = each(executor, &self.settings.pasts, |&past| {
             self.progress
                 .advance(self.share, &format!("{step}, past window {past}"))?;
             Ok::<_, Cancelled>(self.candidate(&factor, poles[number], past))
         });
-        for candidate in of_pasts {
+        for candidate in candidates_of_pasts {
             candidates.extend(candidate?);
         }
         Ok(candidates)

@@ -1,5 +1,5 @@
-//! Flights of known aircraft, and the errors of identified models against the Cramer-Rao bound
-//! (M14.22).
+//! For tests: flights of known aircraft, and the errors of identified models against the Cramer-Rao
+//! bound (M14.22).
 //!
 //! ```text
 //! noise of the outputs: S(omega) = N N^H + dt diag s_v^2,  N: response to the disturbances, of unit power density
@@ -8,6 +8,8 @@
 //! ratio = median over responses and frequencies of |error| / (0.6745 sd of the bound):
 //!     1 at the bound, because the median |x| of a normal x with sd 1 is 0.6745
 //! ```
+//!
+//! An interval *holds* if the true value lies within it.
 
 use nalgebra::{Complex, DMatrix};
 
@@ -34,6 +36,8 @@ use crate::options::Options;
 
 /// A neper in decibels.
 pub(super) const NEPER_DB: f64 = 8.685_889_638;
+/// Median modulus of a normal variable with standard deviation 1.
+const MEDIAN_OF_NORMAL: f64 = 0.6745;
 /// Number of frequencies at which errors are counted.
 const POINTS: usize = 12;
 
@@ -209,7 +213,7 @@ impl Figures {
                     let pair = Pair { output, input };
                     let error = errors[(output, input)];
                     let error_db = (NEPER_DB * error.re).abs();
-                    let ratio = error_db / (0.6745 * bound[k][(output, input)]);
+                    let ratio = error_db / (MEDIAN_OF_NORMAL * bound[k][(output, input)]);
                     self.ratios.push(ratio);
                     if flight.main_pairs.contains(&pair) {
                         self.main_ratios.push(ratio);

@@ -2,13 +2,14 @@
 //!
 //! | stage | files |
 //! |---|---|
-//! | records to spectra and noise (M14.1, M14.2) | `prepared_data`, [`spectra`](crate::spectra) |
+//! | records to spectra and noise (M14.1, M14.2) | `prepared_data`, `split_segments`, `measured_lines`, `data_checks`, [`spectra`](crate::spectra) |
 //! | models of all orders (M14.3) | `candidates`, [`subspace`](crate::subspace) |
 //! | choice of the order (M14.13) | `model_selection`, `order`, [`likelihood`](crate::likelihood) |
 //! | uncertainty and doubts (M14.5, M14.10) | `assessment`, [`diagnostics`](crate::diagnostics) |
 
 mod assessment;
 pub(crate) mod candidates;
+mod data_checks;
 #[cfg(test)]
 mod efficiency_tests;
 #[cfg(test)]
@@ -26,6 +27,7 @@ pub(crate) mod known_answers_tests;
 pub(crate) mod known_flight;
 #[cfg(test)]
 mod long_record_tests;
+mod measured_lines;
 pub(crate) mod model_selection;
 mod noise_weights;
 pub(crate) mod order;
@@ -38,6 +40,7 @@ mod record_caution_tests;
 mod refined_known_answers_tests;
 mod search_records;
 pub(crate) mod second_start;
+mod split_segments;
 
 pub use crate::diagnostics::cautions::IdentificationCaution;
 pub use crate::identification_error::IdentificationError;

@@ -2,7 +2,8 @@
 //!
 //! CT-PBSID (`subspace`) proposes models for pairs of a Laguerre pole and a past window
 //! (`candidates`). A record's *noise factor* multiplies its noise power, so that records with
-//! unlike noise are weighed by their own (`noise_weights`).
+//! unlike noise are weighed by their own (`noise_weights`). A *start* is a model with its cost,
+//! from which a descent begins (`descent`).
 
 use std::collections::BTreeMap;
 
@@ -106,18 +107,21 @@ pub(crate) fn refine_from<'a>(
         .get(&search.order)
         .ok_or_else(|| data.no_model())?
         .clone();
-    // Step 2.
+    // Step 2. The search may have used a part of the records only, so that the model is evaluated
+    // over all of them before its residuals give the new weights.
     progress.next(0.7, "refinement")?;
-    let weights = search
+    let search_weights = search
         .weights
         .over_all_records(data)
         .ok_or_else(|| data.no_model())?;
-    let chosen = Fit::start(&weights.likelihood, chosen.model).ok_or_else(|| data.no_model())?;
-    let weights = weights
-        .updated(data, &chosen)
+    let over_all_records =
+        Fit::start(&search_weights.likelihood, chosen.model).ok_or_else(|| data.no_model())?;
+    let weights = search_weights
+        .updated(data, &over_all_records)
         .ok_or_else(|| data.no_model())?;
     // Step 3.
-    let start = Fit::start(&weights.likelihood, chosen.model).ok_or_else(|| data.no_model())?;
+    let start =
+        Fit::start(&weights.likelihood, over_all_records.model).ok_or_else(|| data.no_model())?;
     let fit = start.descended(&weights.likelihood, Limits::to(CONVERGED), progress)?;
     // Step 4.
     let before_reweighing = match weights.ratio {

@@ -209,23 +209,23 @@ impl<'a> PreparedData<'a> {
             let Some(best) = order_of_least(&descent.criteria) else {
                 return Ok(None);
             };
-            // Step 4, or else step 5.
-            let next = starts.range(top + 1..).next().map(|(order, _)| *order);
-            let highest = descent.fits.keys().next_back().copied();
-            match next {
-                Some(next) if Some(best) == highest => top = next,
-                _ => {
-                    return Ok(Some(OrderSearch {
-                        order: self.decide(&descent, best),
-                        still_falls: Some(best) == highest
-                            && next.is_none()
-                            && descent.criteria.len() > 1,
-                        fits: descent.fits,
-                        criteria: descent.criteria,
-                        weights: descent.weights,
-                    }));
-                }
+            // Step 4.
+            let higher = starts.range(top + 1..).next().map(|(order, _)| *order);
+            let is_top_best = descent.fits.keys().next_back() == Some(&best);
+            if let Some(higher) = higher
+                && is_top_best
+            {
+                top = higher;
+                continue;
             }
+            // Step 5.
+            return Ok(Some(OrderSearch {
+                order: self.decide(&descent, best),
+                still_falls: is_top_best && higher.is_none() && descent.criteria.len() > 1,
+                fits: descent.fits,
+                criteria: descent.criteria,
+                weights: descent.weights,
+            }));
         }
     }
 
@@ -402,9 +402,10 @@ impl Descent<'_> {
         let Some(start) = cheapest else {
             return Ok(None);
         };
-        // The cost at which this order's criterion equals the best.
-        let unit = criterion(1.0, start.order(), &start.model, likelihood, &self.whole);
-        let hopeless_above = unit.map_or(f64::INFINITY, |unit| self.least() / unit);
+        // The cost at which this order's criterion equals the best: the criterion is proportional
+        // to the cost.
+        let of_unit_cost = criterion(1.0, start.order(), &start.model, likelihood, &self.whole);
+        let hopeless_above = of_unit_cost.map_or(f64::INFINITY, |value| self.least() / value);
         let limits = Limits {
             decrement: COMPARABLE,
             hopeless_above,

@@ -358,7 +358,7 @@ fn flown_with_seeds(file: &Value, answers: &Value) -> Vec<FlightRecord> {
 fn measured_feedback(data: &PreparedData, model: &SchurModel) -> Feedback {
     let records = FeedbackRecords {
         segments: &data.unfiltered,
-        lines: data.lines,
+        lines: data.measured_range,
         band: options().band,
         coherence: data.measured.excitation().greatest_coherence(),
     };

@@ -71,7 +71,7 @@ impl Gramians {
         let count = lines.omega.len();
         // Real and imaginary parts side by side; the sums are then real products.
         let mut states = DMatrix::zeros(order, 2 * count);
-        let mut rows = DMatrix::zeros(2 * outputs * count, order);
+        let mut weighted_outputs = DMatrix::zeros(2 * outputs * count, order);
         let at_lines = model.states(&lines.omega, &lines.inputs, &DVector::zeros(order));
         for (k, cr) in resolvents.at_lines(&lines.omega).into_iter().enumerate() {
             for (state, value) in at_lines.column(k).iter().enumerate() {
@@ -81,14 +81,14 @@ impl Gramians {
             for (state, column) in cr.chunks_exact(outputs).enumerate() {
                 whiten(&lines.weights[k], column, |o, value| {
                     let row = 2 * (k * outputs + o);
-                    rows[(row, state)] = value.re;
-                    rows[(row + 1, state)] = value.im;
+                    weighted_outputs[(row, state)] = value.re;
+                    weighted_outputs[(row + 1, state)] = value.im;
                 });
             }
         }
         Self {
             controllability: &states * states.transpose(),
-            observability: rows.transpose() * &rows,
+            observability: weighted_outputs.transpose() * &weighted_outputs,
         }
     }
 }
@@ -104,26 +104,31 @@ pub(crate) struct Coordinates {
 /// Returns the coordinates in which both Gramians are equal and diagonal (steps 1 to 3); `None` if
 /// a Gramian is not positive definite, or the iteration for the singular values does not converge.
 pub(crate) fn balancing_coordinates(gramians: &Gramians) -> Option<Coordinates> {
-    // Step 1: L and M, what the inputs excite, and what the outputs show.
-    let reached = with_floor(gramians.controllability.clone())
+    // Step 1: L and M.
+    let controllability_factor = with_floor(gramians.controllability.clone())
         .cholesky()?
         .unpack();
-    let seen = with_floor(gramians.observability.clone())
+    let observability_factor = with_floor(gramians.observability.clone())
         .cholesky()?
         .unpack();
     // Step 2.
-    let decomposition = (seen.transpose() * &reached).try_svd(false, true, f64::EPSILON, 10_000)?;
+    let decomposition = (observability_factor.transpose() * &controllability_factor).try_svd(
+        false,
+        true,
+        f64::EPSILON,
+        10_000,
+    )?;
     let directions = decomposition.v_t?;
     let largest = decomposition.singular_values.max();
     let roots = decomposition
         .singular_values
         .map(|value| value.max(LEAST_SINGULAR * largest).sqrt());
     // Step 3.
-    let mut transformation = &reached * directions.transpose();
+    let mut transformation = &controllability_factor * directions.transpose();
     for (mut column, root) in transformation.column_iter_mut().zip(roots.iter()) {
         column.unscale_mut(*root);
     }
-    let mut inverse = directions * reached.try_inverse()?;
+    let mut inverse = directions * controllability_factor.try_inverse()?;
     for (mut row, root) in inverse.row_iter_mut().zip(roots.iter()) {
         row.scale_mut(*root);
     }
@@ -176,15 +181,15 @@ pub(crate) fn without_last_states(model: &SchurModel, count: usize) -> Vec<Schur
         .into_owned()
         .try_inverse()
     {
-        let from_removed = a.view((0, kept), (kept, count)) * &inverse;
-        let shown = model.c().columns(kept, count) * inverse;
-        let to_removed = a.view((kept, 0), (count, kept));
-        let driven = model.b().rows(kept, count);
+        let a12_inverse = a.view((0, kept), (kept, count)) * &inverse;
+        let c2_inverse = model.c().columns(kept, count) * inverse;
+        let a21 = a.view((kept, 0), (count, kept));
+        let b2 = model.b().rows(kept, count);
         remaining.extend(SchurModel::new(
-            a11 - &from_removed * to_removed,
-            b1 - from_removed * driven,
-            c1 - &shown * to_removed,
-            model.d() - shown * driven,
+            a11 - &a12_inverse * a21,
+            b1 - a12_inverse * b2,
+            c1 - &c2_inverse * a21,
+            model.d() - c2_inverse * b2,
         ));
     }
     remaining

@@ -6,26 +6,21 @@
 //! gaps = sum_q c_q e_o b_q (missing output o) + sum_q c_q G_i b_q (missing input i)    (M14.21)
 //!
 //! segment r, line k at omega; j imaginary unit; G the model's response, G_i its column for input i
-//! U = dt/sqrt(T) sum_n u[n] e^(-j omega n dt), Y likewise: spectra without a window (`spectrum`)
+//! U, Y spectra of inputs and outputs (`spectrum`);   W whitens the noise (`noise_covariance`)
 //! e_o unit vector of output o;   b_q spectrum of a hat in a gap (`gap_hat`)
-//! W whitens the noise (`noise_covariance`)
+//! tau, c0, c1 effects of the segment's ends: difference of the states, step of the outputs between
+//!    them, and drift; unknown, as are the heights c_q of the hats
 //!
-//! 1  T = W [C (j omega - A)^-1, I, I/(j omega), e_o b_q, G_i b_q]   (nuisance columns),
-//!    e0 = W (Y - G U)
+//! 1  e0 = W (Y - G U);   nuisance columns, the effects of the unknowns:
+//!    T = W [C (j omega - A)^-1, I, I/(j omega), e_o b_q, G_i b_q]
 //! 2  c = argmin |e0 - T c|^2 for real c, from the Gram matrix of the columns, scaled to unit
 //!    length (`pseudo_inverse_root`); eigenvalues below 1e-12 times the largest dropped
 //! 3  e = e0 - T c,   J_r = |e|^2
 //! ```
 //!
-//! The spectra are finite sums, so that the ends of a segment contribute to every line:
-//!
-//! ```text
-//! trim    nothing: the lines k >= 1 of a constant are zero
-//! tau     (initial less final state) / sqrt(T), from the Fourier integral of the state equation
-//! c1      a drift of the outputs: -(slope) sqrt(T)
-//! c0      the step from the segment's end to its start: the sum counts y(0) in full, and exceeds
-//!         the integral by dt/(2 sqrt(T)) (y(0) - y(T))
-//! ```
+//! The spectra are sums without a window, so that the ends of a segment contribute to every line:
+//! tau = (initial less final state) / sqrt(duration), c1 = -(slope) sqrt(duration), and c0 because
+//! the sum counts y(0) in full. The trim contributes nothing: the lines of a constant are zero.
 //!
 //! Nothing is simulated, so unstable models have a cost like any other. `J` per degree of freedom
 //! is 1 for an adequate model, because W whitens the noise: its real and imaginary parts have unit

@@ -3,7 +3,7 @@
 //! ```text
 //! Cov theta = max(phi, 1) G^-1,   phi = J / (N - k)
 //!    theta: local parameters, as many entries of [A B; C D] as the response has degrees of freedom
-//!    (`local_parameters`),   G: their normal matrix (`local_system`)
+//!    (`local_parameters`),   G: their normal matrix, the information about them (`local_system`)
 //!    J cost, N degrees of freedom (`cost`), k parameters;   lambda a pole
 //! pole:      d lambda = w^H dA v,   w^H A = lambda w^H,  A v = lambda v,  w^H v = 1
 //! response:  dH = [C R, I] d[A B; C D] [R B; I],   R = (j omega - A)^-1
@@ -22,7 +22,7 @@ use super::local_parameters::LocalParameters;
 use super::local_system::{LocalSystem, LocalSystems};
 use super::schur_model::SchurModel;
 
-/// Eigenvalues of the scaled information matrix `G` below this share of the largest are rounding
+/// Eigenvalues of `G`, with columns of unit length, below this share of the largest are rounding
 /// errors.
 const ROUNDING: f64 = 1e-13;
 /// Largest standard deviation that is reported for a pole, relative to its modulus or the lower
@@ -35,7 +35,7 @@ const DETERMINED: f64 = 0.5;
 #[derive(Clone, Debug)]
 pub(crate) struct ParameterCovariance {
     parameters: LocalParameters,
-    /// `F` with `F F' = max(phi, 1) G^-1`, the covariance; `G` is the Gauss-Newton matrix of J.
+    /// `F` with `F F' = max(phi, 1) G^-1`, the covariance.
     root: DMatrix<f64>,
     /// `G / max(phi, 1)`.
     information: DMatrix<f64>,
@@ -66,7 +66,7 @@ impl ParameterCovariance {
     /// Computes the cost over other records with the model free to move within its uncertainty:
     /// `e'e - g' (G / max(phi, 1) + G_o)^-1 g` (M14.17), with the residual e and the normal
     /// equations `G_o`, `g` of the other records.
-    pub(crate) fn moved_cost(
+    pub(crate) fn cost_within_uncertainty(
         &self,
         records: &Likelihood,
         model: &SchurModel,
@@ -79,9 +79,9 @@ impl ParameterCovariance {
         Some(cost - root.tr_mul(&system.gradient).norm_squared())
     }
 
-    /// Computes the variances of the real and imaginary parts in `sum_p l_row(p) r_column(p) d
-    /// theta_p` for many vector pairs: `left` holds a vector l (states, outputs) and `right` a
-    /// vector r (states, inputs) in each column.
+    /// Computes the variances of the real and imaginary parts of `l' d[A B; C D] r` for many pairs
+    /// of vectors: `left` holds a vector l (states, outputs) and `right` a vector r (states,
+    /// inputs) in each column. In theta, this is `sum_p l_row(p) r_column(p) d theta_p`.
     pub(crate) fn variances(
         &self,
         left: &DMatrix<Complex<f64>>,

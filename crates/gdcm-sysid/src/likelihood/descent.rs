@@ -2,24 +2,24 @@
 //!
 //! ```text
 //! J cost, N degrees of freedom, k parameters (`cost`); G, g as in `normal_equations`
-//! lambda = 1e-3
+//! phi = J/(N - k);   lambda damping, at first 1e-3;   delta^2 = g' G^+ g: Newton decrement
 //! for each of at most 40 steps:
-//! 1  balanced coordinates (`balancing`), then G and g there
-//! 2  delta^2 = g' G^+ g;  stop if delta^2 < limit k phi,  phi = J/(N - k): converged;
-//!       or if J - 3 delta^2 > the cost above which the model is useless: hopeless
-//! 3  (G + lambda diag G) d = g;  while J does not fall: lambda = max(6 lambda, 1e-7);
+//! 1  F: fall of J over the last six steps.  Stop if J - F (steps left)/6 > the cost above which
+//!       the model is useless: hopeless
+//! 2  balanced coordinates (`balancing`), then G and g there
+//! 3  stop if delta^2 < limit k phi: converged.  The limit is at least 0.1 if F < 0.02 k phi: the
+//!       rest takes too many steps to be worth them
+//!    or if J - 3 delta^2 > the cost above which the model is useless: hopeless
+//! 4  (G + lambda diag G) d = g;  while J does not fall: lambda = max(6 lambda, 1e-7);
 //!       stop if it does not fall after 10 such increases
-//! 4  rho = decrease / (2 g'd - d'G d):  lambda, at least 1e-8,
+//! 5  rho = decrease / (2 g'd - d'G d):  lambda, at least 1e-8,
 //!       /= 10 for rho > 0.75, /= 3 for rho > 0.4, unchanged for rho > 0.15, *= 4 otherwise
-//! 5  by the fall F of J over the last six steps:
-//!       F < 0.02 k phi and delta^2 < 0.1 k phi: stop, the rest takes too many steps to be worth them
-//!       J - F (steps left)/6 > the cost above which the model is useless: hopeless
 //! ```
 //!
 //! The descent also stops if N <= k, or without normal equations.
 //!
-//! delta is the Newton decrement: at delta^2 = 0.02 k phi the remaining distance is 14 % of the
-//! parameters' standard deviation. A limit on the relative decrease in `J` would stop in a valley.
+//! At delta^2 = 0.02 k phi the remaining distance is 14 % of the parameters' standard deviation. A
+//! limit on the relative decrease in `J` would stop in a valley.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -155,11 +155,10 @@ impl Fit {
                 Some(before) => costs[before] - self.cost,
                 None => f64::INFINITY,
             };
-            // The second limit in step 5.
+            // Step 1.
             let steps_left = (MOST_STEPS + 1 - step) as f64;
-            if self.cost - fall * steps_left / OBSERVED_STEPS as f64 > limits.hopeless_above
-                || !self.step(likelihood, limits, fall)
-            {
+            let extrapolated = self.cost - fall * steps_left / OBSERVED_STEPS as f64;
+            if extrapolated > limits.hopeless_above || !self.step(likelihood, limits, fall) {
                 break;
             }
             costs.push(self.cost);
@@ -167,14 +166,13 @@ impl Fit {
         Ok(self)
     }
 
-    /// Takes a step (1 to 4, and the first limit in 5); returns whether a further one may be
-    /// worthwhile. `fall` is `F`, the decrease in the cost over the last six steps, infinite
-    /// before.
+    /// Takes a step (2 to 5); returns whether a further one may be worthwhile. `fall` is `F`,
+    /// infinite before the sixth step.
     fn step(&mut self, likelihood: &Likelihood, limits: Limits, fall: f64) -> bool {
         let Some(dispersion) = self.dispersion(likelihood) else {
             return false;
         };
-        // Step 1.
+        // Step 2.
         self.balance(likelihood);
         let Some(system) =
             NormalEquations::new(likelihood, &self.model, &self.parts, bin_width(likelihood))
@@ -185,28 +183,28 @@ impl Fit {
         let scaled = ScaledSystem::new(system);
         let k_phi = self.model.parameters() as f64 * dispersion;
         let mut direction = scaled.solve(self.damping);
-        // Step 2, and the first limit in step 5 after six slow steps.
-        // With damping, g'd is a lower bound on delta^2, which is computed only where it may end
-        // the descent.
-        let square_at_least = direction
-            .as_ref()
-            .map_or(0.0, |direction| scaled.gradient.dot(direction));
-        let enough = if fall < CONVERGED * k_phi {
+        // Step 3.
+        let limit = if fall < CONVERGED * k_phi {
             limits.decrement.max(COMPARABLE)
         } else {
             limits.decrement
         };
-        let may_end = square_at_least < enough * k_phi
-            || self.cost - LARGEST_FALL * square_at_least > limits.hopeless_above;
+        // With damping, g'd is a lower bound on delta^2, which is computed only where the bound
+        // does not exclude that it ends the descent.
+        let least_square = direction
+            .as_ref()
+            .map_or(0.0, |direction| scaled.gradient.dot(direction));
+        let may_end = least_square < limit * k_phi
+            || self.cost - LARGEST_FALL * least_square > limits.hopeless_above;
         if may_end {
             let square = scaled.decrement().unwrap_or(f64::INFINITY);
             self.decrement = square / k_phi;
-            if self.decrement < enough || self.cost - LARGEST_FALL * square > limits.hopeless_above
-            {
+            let is_hopeless = self.cost - LARGEST_FALL * square > limits.hopeless_above;
+            if self.decrement < limit || is_hopeless {
                 return false;
             }
         }
-        // Steps 3 and 4.
+        // Steps 4 and 5.
         for _ in 0..=FAILURES {
             if let Some(direction) = direction
                 && self.try_step(likelihood, &scaled, &direction)
@@ -242,7 +240,7 @@ impl Fit {
         }
     }
 
-    /// Tries a step, in scaled columns, and takes it if it lowers the cost (step 4); returns
+    /// Tries a step, in scaled columns, and takes it if it lowers the cost (step 5); returns
     /// whether it did.
     fn try_step(
         &mut self,
@@ -286,7 +284,8 @@ fn bin_width(likelihood: &Likelihood) -> f64 {
     if has_gaps { EXACT } else { BIN_WIDTH }
 }
 
-/// Returns the factor on the damping after a step; `ratio` is actual over predicted decrease.
+/// Returns the factor on the damping after a step (step 5); `ratio` is actual over predicted
+/// decrease. The better the quadratic model predicts, the less damping is needed.
 fn damping_factor(ratio: f64) -> f64 {
     if ratio > 0.75 {
         0.1
@@ -310,17 +309,18 @@ impl ScaledSystem {
     /// Scales the columns to unit length, but less where the nuisance columns explain nearly all of
     /// a column: the rest is mostly rounding error.
     fn new(system: NormalEquations) -> Self {
-        let scales = system
-            .matrix
-            .diagonal()
-            .zip_map(&system.whole_diagonal, |left, whole| {
-                let square = left.max(LEAST_SHARE_LEFT * whole);
-                if square > 0.0 {
-                    1.0 / square.sqrt()
-                } else {
-                    0.0
-                }
-            });
+        let scales =
+            system
+                .matrix
+                .diagonal()
+                .zip_map(&system.whole_diagonal, |remaining, whole| {
+                    let square = remaining.max(LEAST_SHARE_LEFT * whole);
+                    if square > 0.0 {
+                        1.0 / square.sqrt()
+                    } else {
+                        0.0
+                    }
+                });
         let mut matrix = system.matrix;
         let size = scales.len();
         for (at, entry) in matrix.iter_mut().enumerate() {

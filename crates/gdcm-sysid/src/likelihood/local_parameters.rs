@@ -87,28 +87,33 @@ impl LocalParameters {
 /// whose diagonal is scaled to 1.
 fn pivots(matrix: &DMatrix<f64>, count: usize) -> Vec<usize> {
     let size = matrix.nrows();
-    let whole = matrix.diagonal();
-    let mut left = whole.map(|square| if square > 0.0 { 1.0 } else { 0.0 });
+    let diagonal = matrix.diagonal();
+    // The scaled diagonal less what the chosen entries explain.
+    let mut remaining = diagonal.map(|square| if square > 0.0 { 1.0 } else { 0.0 });
     let mut factor = DMatrix::<f64>::zeros(size, count);
     let mut chosen = Vec::with_capacity(count);
     for k in 0..count.min(size) {
-        let pivot = left.imax();
-        if left[pivot] <= LEAST_PIVOT {
+        let pivot = remaining.imax();
+        if remaining[pivot] <= LEAST_PIVOT {
             break;
         }
+        // Column k of the Cholesky factor.
         let mut column = matrix.column(pivot).into_owned();
         for (row, entry) in column.iter_mut().enumerate() {
-            *entry /= (whole[row] * whole[pivot]).sqrt().max(f64::MIN_POSITIVE);
+            *entry /= (diagonal[row] * diagonal[pivot])
+                .sqrt()
+                .max(f64::MIN_POSITIVE);
         }
-        let before = factor.columns(0, k);
-        let weights = factor.row(pivot).columns(0, k).transpose();
-        column.gemv(-1.0, &before, &weights, 1.0);
-        column.unscale_mut(left[pivot].sqrt());
-        for (left, entry) in left.iter_mut().zip(column.iter()) {
-            *left -= entry * entry;
+        let earlier_columns = factor.columns(0, k);
+        let pivot_row = factor.row(pivot).columns(0, k).transpose();
+        column.gemv(-1.0, &earlier_columns, &pivot_row, 1.0);
+        column.unscale_mut(remaining[pivot].sqrt());
+        for (remaining, entry) in remaining.iter_mut().zip(column.iter()) {
+            *remaining -= entry * entry;
         }
-        for done in chosen.iter().chain([&pivot]) {
-            left[*done] = 0.0;
+        // Exactly zero, whatever rounding has left: no entry is chosen twice.
+        for chosen_before in chosen.iter().chain([&pivot]) {
+            remaining[*chosen_before] = 0.0;
         }
         factor.set_column(k, &column);
         chosen.push(pivot);

@@ -12,7 +12,7 @@ use crate::spectra::response_estimate::{EstimatePoint, ResponseEstimate};
 const SMOOTHING: [f64; 5] = [1.0, 2.0, 3.0, 2.0, 1.0];
 /// Share by which the diagonal is raised, to keep the covariance regular if outputs depend on each
 /// other.
-const ADDED: f64 = 1e-4;
+const DIAGONAL_SHARE: f64 = 1e-4;
 /// Minimum noise variance relative to the output power; even exact data have rounding errors.
 const FLOOR: f64 = 1e-16;
 
@@ -102,9 +102,9 @@ fn smoothed(points: &[EstimatePoint], k: usize) -> DMatrix<f64> {
     let reach = SMOOTHING.len() / 2;
     let mut sum = points[k].noise.scale(0.0);
     let mut weights = 0.0;
-    for (weight, neighbour) in SMOOTHING.iter().zip(k..) {
-        // Skip neighbours before the first point, which do not exist.
-        let Some(neighbour) = neighbour.checked_sub(reach) else {
+    for (place, weight) in SMOOTHING.iter().enumerate() {
+        // Weight 0 belongs to point k - reach. Neighbours beyond either end do not exist.
+        let Some(neighbour) = (k + place).checked_sub(reach) else {
             continue;
         };
         if let Some(point) = points.get(neighbour) {
@@ -115,7 +115,7 @@ fn smoothed(points: &[EstimatePoint], k: usize) -> DMatrix<f64> {
     let mut covariance = sum / weights;
     for o in 0..covariance.nrows() {
         covariance[(o, o)] +=
-            ADDED * covariance[(o, o)] + FLOOR * points[k].power[o] + f64::MIN_POSITIVE;
+            DIAGONAL_SHARE * covariance[(o, o)] + FLOOR * points[k].power[o] + f64::MIN_POSITIVE;
     }
     covariance
 }

@@ -5,9 +5,10 @@
 //! The column of J for entry (v, s) of [[A, B], [C, D]] is v s at each line:
 //!    v in the columns of V = [W C R, W],   s in the entries of S = [X; U],
 //!    X = R (B U + tau),   R = (j omega - A)^-1
-//! 1  bins over ln omega, each with V^H V at its middle
+//! 1  bins over ln omega, each with V^H V at its middle                       (`frequency_bins`)
 //! 2  G = sum over bins of Re(V^H V (x) sum conj(S) S'),   (x) the Kronecker product
-//! 3  G less the part that the nuisance columns explain (`nuisance_elimination`)
+//!                                                                            (`kronecker_sum`)
+//! 3  G less the part that the nuisance columns explain                 (`nuisance_elimination`)
 //! 4  g = Re sum (V^H e) S^H at every line: exact
 //! ```
 //!
@@ -18,14 +19,16 @@
 
 use nalgebra::{Complex, DMatrix, DVector};
 
-use gdcm_model::executor::{Executor, Sequential, each};
+use gdcm_model::executor::{Sequential, each};
 
 use super::balancing::Gramians;
 use super::cost::{Likelihood, SegmentCost};
+use super::frequency_bins::FrequencyBins;
 use super::frequency_table::{FrequencyTable, OutputResolvents};
-use super::nuisance_elimination::{NuisanceSums, VectorProducts};
+use super::kronecker_sum::{ScalarSquares, kronecker_sum, subtract_squares};
+use super::nuisance_elimination::NuisanceSums;
 use super::schur_model::SchurModel;
-use super::spectral_lines::{SpectralLines, whiten};
+use super::spectral_lines::SpectralLines;
 
 /// Bin width in ln omega while descending.
 pub(crate) const BIN_WIDTH: f64 = 0.04;
@@ -58,14 +61,10 @@ impl NormalEquations {
     ) -> Option<Self> {
         // Step 1.
         let resolvents = likelihood.resolvents(model);
-        let binning = Binning::new(likelihood, bin_width);
-        let products = binning.vector_products(likelihood, model);
-        let bin_count = binning.power.len();
-        let segments = likelihood
-            .segments
-            .iter()
-            .zip(parts)
-            .zip(&binning.line_bins);
+        let bins = FrequencyBins::new(likelihood, bin_width);
+        let products = bins.vector_products(likelihood, model);
+        // Steps 2 to 4: sums over the lines of each segment.
+        let segments = likelihood.segments.iter().zip(parts).zip(&bins.of_lines);
         let sums = each(
             likelihood.executor,
             segments,
@@ -76,18 +75,17 @@ impl NormalEquations {
                     part,
                     resolvents: &resolvents,
                 };
-                segment.sums(line_bins, bin_count)
+                segment.sums(line_bins, bins.count())
             },
         );
-        // Steps 2 and 4: sums over the segments.
+        // Steps 2 and 4: over all segments.
         let outputs = model.d().nrows();
         let order = model.order();
         let size = order + model.d().ncols();
-        let mut squares = ScalarSquares::zeros(size, bin_count);
+        let mut squares = ScalarSquares::zeros(size, bins.count());
         let mut gradient = DMatrix::zeros(order + outputs, size);
         for segment in &sums {
-            squares.re += &segment.squares.re;
-            squares.im += &segment.squares.im;
+            squares.add(&segment.squares);
             gradient += &segment.gradient;
         }
         let mut matrix = kronecker_sum(&products, &squares, likelihood.executor);
@@ -108,7 +106,7 @@ impl NormalEquations {
             whole_diagonal,
             gramians: Gramians {
                 controllability: squares.controllability(order),
-                observability: products.observability(order, &binning.power),
+                observability: products.observability(order, &bins.squared_scales()),
             },
         })
     }
@@ -132,151 +130,12 @@ pub(super) fn products_with(
     DVector::from_column_slice(segment.gradient(&segment.scalars()).as_slice())
 }
 
-/// The bin of every line (step 1).
-struct Binning {
-    /// Geometric mean frequency of each bin \[rad/s\].
-    omega: Vec<f64>,
-    /// Segment and line whose weight represents each bin.
-    representatives: Vec<(usize, usize)>,
-    /// Sum of the lines' squared weight scales in each bin.
-    power: Vec<f64>,
-    /// Bin index for each line in each segment.
-    line_bins: Vec<Vec<usize>>,
-}
-
-impl Binning {
-    /// Fills bins from the lowest frequency on; each bin begins at the first line above the
-    /// previous bin.
-    fn new(likelihood: &Likelihood, width: f64) -> Self {
-        let mut lines: Vec<(f64, usize, usize)> = Vec::new();
-        for (segment, own) in likelihood.segments.iter().enumerate() {
-            for (k, omega) in own.omega.iter().enumerate() {
-                lines.push((omega.ln(), segment, k));
-            }
-        }
-        lines.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let mut binning = Self {
-            omega: Vec::new(),
-            representatives: Vec::new(),
-            power: Vec::new(),
-            line_bins: likelihood
-                .segments
-                .iter()
-                .map(|segment| vec![0; segment.omega.len()])
-                .collect(),
-        };
-        let mut first = 0;
-        while first < lines.len() {
-            let end =
-                first + lines[first..].partition_point(|line| line.0 < lines[first].0 + width);
-            let members = &lines[first..end];
-            let mean = members.iter().map(|line| line.0).sum::<f64>() / members.len() as f64;
-            let representative = members
-                .partition_point(|line| line.0 < mean)
-                .min(members.len() - 1);
-            let mut power = 0.0;
-            for &(_, segment, k) in members {
-                binning.line_bins[segment][k] = binning.omega.len();
-                power += likelihood.segments[segment].scale.powi(2);
-            }
-            binning.power.push(power);
-            binning
-                .representatives
-                .push((members[representative].1, members[representative].2));
-            binning.omega.push(mean.exp());
-            first = end;
-        }
-        binning
-    }
-
-    /// Computes `V^H V` for every bin.
-    fn vector_products(&self, likelihood: &Likelihood, model: &SchurModel) -> VectorProducts {
-        let middles = self.omega.iter().zip(&self.representatives);
-        let products = each(likelihood.executor, middles, |(&omega, &(segment, k))| {
-            let lines = &likelihood.segments[segment];
-            let weight = lines.weights[k].unscale(lines.scale);
-            let mut cr = vec![Complex::default(); model.c().nrows() * model.order()];
-            model.output_resolvent(omega, &mut cr);
-            let vectors = vectors(&cr, &weight);
-            vectors.adjoint() * &vectors
-        });
-        VectorProducts::new(products)
-    }
-}
-
-/// Returns `V = [W C R, W]`, outputs x (n + outputs), from `C R`, column after column.
-fn vectors(cr: &[Complex<f64>], weight: &DMatrix<Complex<f64>>) -> DMatrix<Complex<f64>> {
-    let outputs = weight.nrows();
-    let order = cr.len() / outputs;
-    let mut vectors = DMatrix::zeros(outputs, order + outputs);
-    for (state, column) in cr.chunks_exact(outputs).enumerate() {
-        let mut to = vectors.column_mut(state);
-        whiten(weight, column, |o, value| to[o] = value);
-    }
-    vectors.columns_mut(order, outputs).copy_from(weight);
-    vectors
-}
-
 /// A segment and its cost at a model.
 struct SegmentAtModel<'s> {
     lines: &'s SpectralLines,
     model: &'s SchurModel,
     part: &'s SegmentCost,
     resolvents: &'s OutputResolvents<'s>,
-}
-
-/// `sum conj(S) S'` in each bin, as an upper triangle: a row for each pair in [`ordered_pairs`], a
-/// column for each bin.
-struct ScalarSquares {
-    /// Number of entries in S: n + inputs.
-    size: usize,
-    re: DMatrix<f64>,
-    im: DMatrix<f64>,
-}
-
-impl ScalarSquares {
-    fn zeros(size: usize, bins: usize) -> Self {
-        let pairs = size * (size + 1) / 2;
-        Self {
-            size,
-            re: DMatrix::zeros(pairs, bins),
-            im: DMatrix::zeros(pairs, bins),
-        }
-    }
-
-    /// Adds `power conj(S) S'` to a bin; `re` and `im` hold the parts of S.
-    fn add(&mut self, bin: usize, re: &[f64], im: &[f64], power: f64) {
-        let pairs = self.re.nrows();
-        let mut to_re = &mut self.re.as_mut_slice()[bin * pairs..(bin + 1) * pairs];
-        let mut to_im = &mut self.im.as_mut_slice()[bin * pairs..(bin + 1) * pairs];
-        for first in 0..self.size {
-            let length = self.size - first;
-            let (row_re, rest_re) = to_re.split_at_mut(length);
-            let (row_im, rest_im) = to_im.split_at_mut(length);
-            let first_re = power * re[first];
-            let first_im = power * im[first];
-            let seconds = re[first..].iter().zip(&im[first..]);
-            for ((to, to_im), (re, im)) in row_re.iter_mut().zip(row_im).zip(seconds) {
-                *to += first_re * re + first_im * im;
-                *to_im += first_re * im - first_im * re;
-            }
-            to_re = rest_re;
-            to_im = rest_im;
-        }
-    }
-
-    /// Computes `Re sum X X^H` over all bins; X is the first `order` entries in S.
-    fn controllability(&self, order: usize) -> DMatrix<f64> {
-        let sums = self.re.column_sum();
-        let mut gramian = DMatrix::zeros(order, order);
-        for (row, (first, second)) in ordered_pairs(self.size).into_iter().enumerate() {
-            if second < order {
-                gramian[(first, second)] = sums[row];
-                gramian[(second, first)] = sums[row];
-            }
-        }
-        gramian
-    }
 }
 
 /// A segment's contributions to steps 2 to 4.
@@ -327,7 +186,7 @@ impl SegmentAtModel<'_> {
         let size = scalars.re.nrows();
         let mut squares = ScalarSquares::zeros(size, bin_count);
         let mut nuisance = NuisanceSums::new(size, bin_count, lines.hats.len());
-        let power = lines.scale * lines.scale;
+        let squared_scale = lines.scale * lines.scale;
         let mut conjugate = vec![Complex::default(); size];
         for (k, &bin) in line_bins.iter().enumerate() {
             let re = &scalars.re.as_slice()[k * size..(k + 1) * size];
@@ -335,7 +194,7 @@ impl SegmentAtModel<'_> {
             for (entry, (re, im)) in conjugate.iter_mut().zip(re.iter().zip(im)) {
                 *entry = Complex::new(*re, -*im);
             }
-            squares.add(bin, re, im, power);
+            squares.add_line(bin, re, im, squared_scale);
             nuisance.add(lines, k, bin, &conjugate);
         }
         SegmentSums {
@@ -364,99 +223,6 @@ impl SegmentAtModel<'_> {
         }
         along
     }
-}
-
-/// Computes `sum over bins of Re(P (x) Q)` for Hermitian `P = V^H V` and `Q = sum conj(S) S'` (step
-/// 2): entry ((v, s), (w, t)) is `Re(P[v, w] Q[s, t])`, with v running fastest.
-///
-/// Only the pairs v <= w and s <= t are computed: the entries (v, s), (w, t) are
-/// `Re P Re Q - Im P Im Q`; the entries (v, t), (w, s), with conj(Q), are `Re P Re Q + Im P Im Q`.
-fn kronecker_sum(
-    products: &VectorProducts,
-    squares: &ScalarSquares,
-    executor: &dyn Executor,
-) -> DMatrix<f64> {
-    let vectors = products.vectors;
-    let bins = squares.re.ncols();
-    let vector_pairs = ordered_pairs(vectors);
-    let mut left_re = DMatrix::zeros(vector_pairs.len(), bins);
-    let mut left_im = left_re.clone();
-    for bin in 0..bins {
-        for (row, &(v, w)) in vector_pairs.iter().enumerate() {
-            let product = products.entry(bin, v, w);
-            left_re[(row, bin)] = product.re;
-            left_im[(row, bin)] = product.im;
-        }
-    }
-    let pairs_of_parts = [(&left_re, &squares.re), (&left_im, &squares.im)];
-    let parts = each(executor, pairs_of_parts, |(left, right)| {
-        left * right.transpose()
-    });
-    let [re, im] = parts.as_slice() else {
-        return DMatrix::zeros(0, 0);
-    };
-    let size = vectors * squares.size;
-    let mut matrix = DMatrix::zeros(size, size);
-    for (column, &(s, t)) in ordered_pairs(squares.size).iter().enumerate() {
-        for (row, &(v, w)) in vector_pairs.iter().enumerate() {
-            let direct = re[(row, column)] - im[(row, column)];
-            let crossed = re[(row, column)] + im[(row, column)];
-            let [vs, wt, vt, ws] = [
-                s * vectors + v,
-                t * vectors + w,
-                t * vectors + v,
-                s * vectors + w,
-            ];
-            matrix[(vs, wt)] = direct;
-            matrix[(wt, vs)] = direct;
-            matrix[(vt, ws)] = crossed;
-            matrix[(ws, vt)] = crossed;
-        }
-    }
-    matrix
-}
-
-/// Number of columns in a panel: the unit of parallel work in [`subtract_squares`].
-const PANEL: usize = 64;
-
-/// Subtracts `sum F F'` over the matrices F from a symmetric matrix (step 3).
-///
-/// Each panel is computed from its diagonal block down, and copied to the right of it.
-fn subtract_squares(matrix: &mut DMatrix<f64>, roots: &[DMatrix<f64>], executor: &dyn Executor) {
-    let size = matrix.nrows();
-    let panels = each(executor, (0..size).step_by(PANEL), |first| {
-        let width = PANEL.min(size - first);
-        let mut panel = matrix
-            .view((first, first), (size - first, width))
-            .into_owned();
-        for root in roots {
-            let turned = root.rows(first, width).transpose();
-            panel.gemm(-1.0, &root.rows(first, size - first), &turned, 1.0);
-        }
-        panel
-    });
-    for (number, panel) in panels.iter().enumerate() {
-        let first = number * PANEL;
-        let width = panel.ncols();
-        matrix
-            .view_mut((first, first), panel.shape())
-            .copy_from(panel);
-        let below = panel.rows(width, size - first - width).transpose();
-        matrix
-            .view_mut((first, first + width), below.shape())
-            .copy_from(&below);
-    }
-}
-
-/// Returns all index pairs below `count` whose second index is not smaller than the first.
-fn ordered_pairs(count: usize) -> Vec<(usize, usize)> {
-    let mut pairs = Vec::with_capacity(count * (count + 1) / 2);
-    for first in 0..count {
-        for second in first..count {
-            pairs.push((first, second));
-        }
-    }
-    pairs
 }
 
 #[cfg(test)]

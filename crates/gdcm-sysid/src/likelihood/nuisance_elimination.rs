@@ -7,6 +7,7 @@
 //!    tau_i, c0_o, c1_o          unit vectors,   sigma = 1, 1, 1/(j omega)
 //!    missing output o           unit vector,    sigma = b_q
 //!    missing input j            [B_j; D_j],     sigma = b_q
+//! The sums are those over the lines in a bin (`frequency_bins`); V is constant there.
 //! 1  J'T[(v, s), (w, sigma)] = sum over bins of Re(V^H V[v, w] sum conj(S_s) sigma)
 //! 2  T'T[(v, sigma), (w, sigma')] = sum over bins of Re(V^H V[v, w] sum conj(sigma) sigma')
 //! 3  J'T F with F F' = (T'T)^+:  the caller subtracts (J'T F) (J'T F)' from G
@@ -16,6 +17,7 @@ use nalgebra::{Complex, DMatrix};
 
 use gdcm_model::dataset::channel::ChannelSide;
 
+use super::binned_products::{BinnedScalars, VectorProducts};
 use super::gram_matrix::pseudo_inverse_root;
 use super::nuisance_columns::DEPENDENT;
 use super::schur_model::SchurModel;
@@ -27,74 +29,6 @@ const ONE: usize = 0;
 const INTEGRATOR: usize = 1;
 /// Index of the first hat.
 const FIRST_HAT: usize = 2;
-
-/// `V^H V` in every bin, for weights with scale 1.
-pub(super) struct VectorProducts {
-    /// Size of `V^H V`: n + outputs.
-    pub(super) vectors: usize,
-    /// A row for each entry in `V^H V`, column after column, and two columns for each bin: real
-    /// part and negative imaginary part.
-    table: DMatrix<f64>,
-}
-
-impl VectorProducts {
-    /// Gathers `V^H V` from all bins.
-    pub(super) fn new(products: Vec<DMatrix<Complex<f64>>>) -> Self {
-        let vectors = products.first().map_or(0, DMatrix::nrows);
-        let mut table = DMatrix::zeros(vectors * vectors, 2 * products.len());
-        for (bin, product) in products.iter().enumerate() {
-            for (row, entry) in product.iter().enumerate() {
-                table[(row, 2 * bin)] = entry.re;
-                table[(row, 2 * bin + 1)] = -entry.im;
-            }
-        }
-        Self { vectors, table }
-    }
-
-    /// Returns an entry in a bin's `V^H V`.
-    pub(super) fn entry(&self, bin: usize, v: usize, w: usize) -> Complex<f64> {
-        let row = w * self.vectors + v;
-        Complex::new(self.table[(row, 2 * bin)], -self.table[(row, 2 * bin + 1)])
-    }
-
-    /// Computes `Re sum (W C R)^H W C R` over the bins, with the weight `power` of each; n x n.
-    pub(super) fn observability(&self, order: usize, power: &[f64]) -> DMatrix<f64> {
-        let mut gramian = DMatrix::zeros(order, order);
-        for (bin, power) in power.iter().enumerate() {
-            for w in 0..order {
-                for v in 0..order {
-                    gramian[(v, w)] += power * self.table[(w * self.vectors + v, 2 * bin)];
-                }
-            }
-        }
-        gramian
-    }
-
-    /// Computes `sum over bins of Re(V^H V[v, w] z)` for the columns w from `first` on: rows are
-    /// entries (v, w) with v running fastest, columns those of `scalars`.
-    fn times(&self, first: usize, count: usize, scalars: &BinnedScalars) -> DMatrix<f64> {
-        let rows = self.table.rows(first * self.vectors, count * self.vectors);
-        rows * &scalars.table
-    }
-}
-
-/// Complex scalars z summed in bins: real and imaginary parts in two rows for each bin.
-struct BinnedScalars {
-    table: DMatrix<f64>,
-}
-
-impl BinnedScalars {
-    fn zeros(bins: usize, count: usize) -> Self {
-        Self {
-            table: DMatrix::zeros(2 * bins, count),
-        }
-    }
-
-    fn add(&mut self, bin: usize, column: usize, value: Complex<f64>) {
-        self.table[(2 * bin, column)] += value.re;
-        self.table[(2 * bin + 1, column)] += value.im;
-    }
-}
 
 /// Sums over a segment's lines, bin by bin.
 pub(super) struct NuisanceSums {
@@ -160,11 +94,11 @@ impl NuisanceSums {
         products: &VectorProducts,
         columns: &[NuisanceColumn],
     ) -> DMatrix<f64> {
-        let vectors = products.vectors;
-        let size = self.with_parameters[ONE].table.ncols();
+        let vectors = products.size;
+        let size = self.with_parameters[ONE].count();
         let mut result = DMatrix::zeros(vectors * size, columns.len());
         for (scalar, sums) in self.with_parameters.iter().enumerate() {
-            // The range of columns in V that this scalar's nuisance columns use.
+            // Only the range of columns in V that this scalar's nuisance columns use is computed.
             let with_scalar = columns.iter().filter(|column| column.scalar == scalar);
             let used = with_scalar.flat_map(|column| column.vector.iter().map(|(w, _)| *w));
             let Some(first) = used.clone().min() else {
@@ -195,7 +129,7 @@ impl NuisanceSums {
         products: &VectorProducts,
         columns: &[NuisanceColumn],
     ) -> DMatrix<f64> {
-        let vectors = products.vectors;
+        let vectors = products.size;
         let scalars = self.with_parameters.len();
         let table = products.times(0, vectors, &self.squares);
         let mut result = DMatrix::zeros(columns.len(), columns.len());

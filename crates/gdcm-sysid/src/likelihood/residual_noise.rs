@@ -13,6 +13,8 @@
 //! 3  C <- (nu C + l diag C) / (nu + l),  plus 1e-4 of its diagonal
 //! ```
 //!
+//! Step 3 shrinks C towards its diagonal, as if that had been observed with l degrees of freedom.
+//!
 //! The noise that the local polynomial method measures has too few degrees of freedom in short
 //! pieces, and is too small near lightly damped modes; a wrong model that follows the noise then
 //! costs less than the right one.
@@ -41,8 +43,8 @@ const HALF_WIDTH: f64 = 0.25;
 const WIDENING: f64 = 1.2;
 /// Minimum degrees of freedom per output.
 const FREEDOM_AN_OUTPUT: f64 = 8.0;
-/// Share by which the diagonal is raised.
-const ADDED: f64 = 1e-4;
+/// Share by which the diagonal is raised, to keep the covariance regular.
+const DIAGONAL_SHARE: f64 = 1e-4;
 
 /// A line's residual in output units, and the share of the noise power left in it.
 struct ResidualLine {
@@ -50,7 +52,7 @@ struct ResidualLine {
     /// `e`.
     residual: Vec<Complex<f64>>,
     /// `1 - h - k/N`: the share of the noise power that nuisance columns and parameters leave.
-    left: f64,
+    remaining_share: f64,
 }
 
 /// Computes the noise covariance from a model's residuals; `parts` are its segment costs.
@@ -115,7 +117,7 @@ fn residual_lines(
         lines.push(ResidualLine {
             log_omega: omega.ln(),
             residual: residual.iter().copied().collect(),
-            left: 1.0 - shares[k].min(LARGEST_SHARE) - taken_by_model,
+            remaining_share: 1.0 - shares[k].min(LARGEST_SHARE) - taken_by_model,
         });
     }
     Some(lines)
@@ -136,10 +138,9 @@ fn covariance_around(
         sums = WeightedSums::new(lines, log_omega, half_width, outputs);
     }
     let freedom = sums.freedom();
-    // Step 3.
-    // The diagonal matrix counts as much as this many degrees of freedom: l in step 3.
+    // Step 3: l degrees of freedom for the diagonal matrix, so that only the other entries shrink.
     let diagonal_freedom = outputs as f64;
-    let mut covariance = sums.products.unscale(sums.left);
+    let mut covariance = sums.products.unscale(sums.weights);
     for row in 0..outputs {
         for column in 0..outputs {
             if row != column {
@@ -149,7 +150,7 @@ fn covariance_around(
     }
     for o in 0..outputs {
         let variance = covariance[(o, o)].re;
-        covariance[(o, o)] = Complex::from(variance * (1.0 + ADDED) + f64::MIN_POSITIVE);
+        covariance[(o, o)] = Complex::from(variance * (1.0 + DIAGONAL_SHARE) + f64::MIN_POSITIVE);
     }
     covariance
 }
@@ -159,17 +160,17 @@ struct WeightedSums {
     /// `sum a e e^H`.
     products: DMatrix<Complex<f64>>,
     /// `sum b`.
-    left: f64,
+    weights: f64,
     /// `sum b^2`.
-    left_squared: f64,
+    squared_weights: f64,
 }
 
 impl WeightedSums {
     fn new(lines: &[ResidualLine], log_omega: f64, half_width: f64, outputs: usize) -> Self {
         let mut sums = Self {
             products: DMatrix::zeros(outputs, outputs),
-            left: 0.0,
-            left_squared: 0.0,
+            weights: 0.0,
+            squared_weights: 0.0,
         };
         let first = lines.partition_point(|line| line.log_omega <= log_omega - half_width);
         for line in &lines[first..] {
@@ -177,13 +178,13 @@ impl WeightedSums {
             if x >= half_width {
                 break;
             }
-            let weight = 0.5 * (1.0 + (PI * x / half_width).cos());
-            let left = weight * line.left;
-            sums.left += left;
-            sums.left_squared += left * left;
+            let hann = 0.5 * (1.0 + (PI * x / half_width).cos());
+            let weight = hann * line.remaining_share;
+            sums.weights += weight;
+            sums.squared_weights += weight * weight;
             for (column, second) in line.residual.iter().enumerate() {
                 for (row, first) in line.residual.iter().enumerate() {
-                    sums.products[(row, column)] += first * second.conj() * weight;
+                    sums.products[(row, column)] += first * second.conj() * hann;
                 }
             }
         }
@@ -192,8 +193,8 @@ impl WeightedSums {
 
     /// Returns `nu`, the degrees of freedom.
     fn freedom(&self) -> f64 {
-        if self.left_squared > 0.0 {
-            self.left * self.left / self.left_squared
+        if self.squared_weights > 0.0 {
+            self.weights * self.weights / self.squared_weights
         } else {
             0.0
         }

@@ -200,7 +200,42 @@ struct FlownSweep {
 /// Returns a sweep for each input like the strongest flown; inputs that were not swept get the
 /// others' medians, if any input was swept. `None` without lines.
 fn standard_sweeps(fitted: &FittedModel) -> Option<Vec<StandardSweep>> {
-    let mut flown = Vec::with_capacity(fitted.scales.inputs.len());
+    let strongest = strongest_sweeps(fitted)?;
+    let mut really_swept: Vec<FlownSweep> = Vec::new();
+    for (input, sweep) in strongest.iter().enumerate() {
+        if !fitted.not_swept.contains(&input) {
+            really_swept.push(*sweep);
+        }
+    }
+    let mut sweeps = Vec::with_capacity(strongest.len());
+    for (input, own) in strongest.into_iter().enumerate() {
+        let is_assumed = fitted.not_swept.contains(&input) && !really_swept.is_empty();
+        let flown = if is_assumed {
+            FlownSweep {
+                amplitude: median_of(&really_swept, |sweep| sweep.amplitude),
+                length_s: median_of(&really_swept, |sweep| sweep.length_s),
+            }
+        } else {
+            own
+        };
+        sweeps.push(StandardSweep {
+            sweep: PlannedSweep {
+                input,
+                amplitude: flown.amplitude,
+                length_s: flown.length_s,
+                band: sweep_band(fitted.lines, flown.length_s),
+                repeats: 1,
+            },
+            is_assumed,
+        });
+    }
+    Some(sweeps)
+}
+
+/// Returns the strongest movement of each input in a segment, measured as a sweep, in the input's
+/// unit; `None` without lines.
+fn strongest_sweeps(fitted: &FittedModel) -> Option<Vec<FlownSweep>> {
+    let mut sweeps = Vec::with_capacity(fitted.scales.inputs.len());
     for (input, scale) in fitted.scales.inputs.iter().enumerate() {
         let mut strongest: Option<FlownSweep> = None;
         for segment in &fitted.likelihood.segments {
@@ -212,37 +247,9 @@ fn standard_sweeps(fitted: &FittedModel) -> Option<Vec<StandardSweep>> {
             }
         }
         let strongest = strongest?;
-        flown.push(FlownSweep {
+        sweeps.push(FlownSweep {
             amplitude: strongest.amplitude * scale,
             ..strongest
-        });
-    }
-    let mut swept: Vec<FlownSweep> = Vec::new();
-    for (input, sweep) in flown.iter().enumerate() {
-        if !fitted.not_swept.contains(&input) {
-            swept.push(*sweep);
-        }
-    }
-    let mut sweeps = Vec::with_capacity(flown.len());
-    for (input, own) in flown.into_iter().enumerate() {
-        let is_assumed = fitted.not_swept.contains(&input) && !swept.is_empty();
-        let used = if is_assumed {
-            FlownSweep {
-                amplitude: median_of(&swept, |sweep| sweep.amplitude),
-                length_s: median_of(&swept, |sweep| sweep.length_s),
-            }
-        } else {
-            own
-        };
-        sweeps.push(StandardSweep {
-            sweep: PlannedSweep {
-                input,
-                amplitude: used.amplitude,
-                length_s: used.length_s,
-                band: sweep_band(fitted.lines, used.length_s),
-                repeats: 1,
-            },
-            is_assumed,
         });
     }
     Some(sweeps)

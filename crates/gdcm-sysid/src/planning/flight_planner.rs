@@ -3,30 +3,27 @@
 //! ```text
 //! Theta = [A B; C D] the entries of the identified model;  R = (j omega I - A)^-1
 //! H = C R B + D its response;  H_oi output o, input i;  [..]_o row o, [..]_i column i
-//! U, Y spectra of the inputs and the outputs;  tau transient: initial less final state (`cost`)
 //! G, G_j Fisher information about Theta (`normal_equations`) from the flown records and from
 //!    planned sweep j, which is flown r_j times
-//! phi dispersion: cost per degree of freedom, at least 1; it scales the assumed noise power to
-//!    that of the residual
+//! phi dispersion: cost per degree of freedom, at least 1; it scales the assumed noise power
 //! N changes of the state coordinates, which H does not show, so that G is singular along them
 //! sd_now, sd standard deviation of ln H_oi as reported now (`bands`), and after the sweeps
 //!
-//! 1  G_j: U from the sweep's samples, Y = H U, tau = 0 (the sweep begins and ends in trim), the
-//!    other inputs 0, the noise that of the flown records
+//! 1  G_j: from the spectrum of the sweep, without residual and without transient (the sweep begins
+//!    and ends in trim), the other inputs 0, the noise that of the flown records
 //! 2  T = G/phi + sum_j r_j G_j/phi + c N N',   c such that c N N' and G/phi have the same trace:
 //!    c N N' makes T regular along N
 //! 3  h = gradient of ln H_oi in Theta:  dH = [C R, I]_o dTheta [R B; I]_i
-//!    var = h' T^-1 h, the same as h' (...)^+ h: h is orthogonal to N, and N' G = 0
+//!    var = h' T^-1 h, which N does not change: h is orthogonal to N, and N' G = 0
 //!    var_now likewise, without the planned sweeps
 //! 4  sd^2 = f^2 + (sd_now^2 - f^2) var / var_now,   f^2 = b^2 / 2,  b the fed-back share (M14.17)
 //!    f at most sd_now;  var / var_now at most 1
 //! ```
 //!
-//! Why step 4 has two parts: `sd_now` contains the variance of the fit, the spread between
-//! neighbouring model orders, and the fed-back share, by which gusts and noise reach the response
-//! through feedback. A visible fed-back share remains, because further flights of the same kind do
-//! not change it. The spread between orders, and a share that is not visible (f = 0), are due to
-//! noise: they fall with the variance of the fit.
+//! Step 4: gusts and noise reach the response through feedback. A visible fed-back share remains,
+//! because further flights of the same kind do not change it. The other parts of `sd_now`, from the
+//! fit and between neighbouring model orders, are due to noise, and fall with the variance of the
+//! fit.
 
 use std::cell::OnceCell;
 
@@ -98,15 +95,15 @@ impl<'a> FlightPlanner<'a> {
         let model = SchurModel::from_state_space(&information.model)?;
         let changes = coordinate_changes(&model);
         // c N N'.
-        let mut fixed = &changes * changes.transpose();
-        let ratio = information.flown.trace() / fixed.trace();
-        if ratio.is_finite() && ratio > 0.0 {
-            fixed *= ratio;
+        let mut along_changes = &changes * changes.transpose();
+        let c = information.flown.trace() / along_changes.trace();
+        if c.is_finite() && c > 0.0 {
+            along_changes *= c;
         }
         Some(Self {
             information,
             model,
-            flown: fixed + &information.flown,
+            flown: along_changes + &information.flown,
             executor,
             now: OnceCell::new(),
         })
@@ -178,13 +175,15 @@ impl<'a> FlightPlanner<'a> {
         omega: f64,
     ) -> Option<ResponseInterval> {
         let gradient = self.log_gradient(pair, omega);
-        let before = self.now()?.variance(&gradient)?;
-        let left = after.variance(&gradient)?;
+        let variance_now = self.now()?.variance(&gradient)?;
+        let variance_after = after.variance(&gradient)?;
         let now = self.interval_now(pair, omega);
-        let fed_back = self.interval_limit(pair, omega);
+        let limit = self.interval_limit(pair, omega);
+        let ratio_re = variance_after.re / variance_now.re;
+        let ratio_im = variance_after.im / variance_now.im;
         Some(ResponseInterval {
-            half_db: reduced(now.half_db, fed_back.half_db, left.re / before.re),
-            half_deg: reduced(now.half_deg, fed_back.half_deg, left.im / before.im),
+            half_db: reduced(now.half_db, limit.half_db, ratio_re),
+            half_deg: reduced(now.half_deg, limit.half_deg, ratio_im),
         })
     }
 
@@ -220,9 +219,10 @@ impl<'a> FlightPlanner<'a> {
         let (outputs, inputs) = self.model.d().shape();
         let mut cr = DMatrix::<Complex<f64>>::zeros(outputs, order);
         self.model.output_resolvent(omega, cr.as_mut_slice());
-        let mut moved = DMatrix::zeros(inputs, 1);
-        moved[pair.input] = Complex::from(1.0);
-        let states = self.model.states(&[omega], &moved, &DVector::zeros(order));
+        let mut unit_input = DMatrix::zeros(inputs, 1);
+        unit_input[pair.input] = Complex::from(1.0);
+        let no_transient = DVector::zeros(order);
+        let states = self.model.states(&[omega], &unit_input, &no_transient);
         // [C R, I]_o, then [R B; I]_i.
         let mut rows: Vec<Complex<f64>> = cr.row(pair.output).iter().copied().collect();
         rows.resize(order + outputs, Complex::default());
@@ -287,11 +287,11 @@ impl FactoredInformation {
     }
 }
 
-/// Returns an interval's half-width when the fit's variance falls to the share `var / var_now` of
-/// its present value (step 4).
-fn reduced(now: f64, fed_back: f64, share: f64) -> f64 {
-    let fixed = fed_back.min(now).powi(2);
-    (fixed + (now.powi(2) - fixed) * share.clamp(0.0, 1.0)).sqrt()
+/// Returns an interval's half-width after the sweeps (step 4): `now` is the present half-width,
+/// `limit` that for infinitely many flights, `ratio` is `var / var_now`.
+fn reduced(now: f64, limit: f64, ratio: f64) -> f64 {
+    let fixed = limit.min(now).powi(2);
+    (fixed + (now.powi(2) - fixed) * ratio.clamp(0.0, 1.0)).sqrt()
 }
 
 /// Interpolates linearly in log frequency; constant beyond the ends.

@@ -1,43 +1,32 @@
 //! Searches the columns that may hold a channel, by name, documentation and unit.
 //!
-//! Steps 1 to 3, and the rules a to e in step 1, are tried in turn until one finds columns:
+//! Steps 1 to 3 are tried in turn until one finds columns, and so are the rules N (by name) and A
+//! (by alias) in step 1; step 4 reduces the columns found:
 //!
 //! ```text
-//! 1  without aliases, by the channel's name         channel -> column in the file
-//!    a  exactly                                     az -> az
-//!    b  apart from sign marks                       az -> -az, az (down)
-//!    c  as a synonym, apart from sign marks         NZ -> load factor
-//!    with aliases, by these instead                 alias -> column in the file
-//!    a  exactly                                     elev_yoke1 -> elev_yoke1
-//!    b  the first that RecordTable::find resolves:
-//!          without regard to case                   Elev_Yoke1 -> elev_yoke1
-//!          by its column number, from 1             #3 -> the third column
-//!          by its index in a matrix                 xyz[0] or xyz(1) -> xyz_1
-//!       a column number that does not exist ends step 1
-//!    c  folded: without case, marks and blanks      elev_yoke1 -> elev,yoke1
-//!    d  folded, apart from sign marks               az_b -> az b (down)
-//!    e  as a synonym, apart from sign marks         elevator -> pitch stick
-//! 2  by the logging system's documentation          P -> vehicle_angular_velocity.xyz[0]
-//! 3  as a topic's field, exactly                    az -> IMU.az
+//! 1   a channel without aliases, by its name         channel -> column in the file
+//!     N1  exactly                                    az -> az
+//!     N2  apart from sign marks                      az -> -az, az (down)
+//!     N3  as a synonym, apart from sign marks        NZ -> load factor
+//!     a channel with aliases, by these instead       alias -> column in the file
+//!     A1  exactly                                    elev_yoke1 -> elev_yoke1
+//!     A2  the first that RecordTable::find resolves:
+//!           without regard to case                   Elev_Yoke1 -> elev_yoke1
+//!           by its column number, from 1             #3 -> the third column
+//!           by its index in a matrix                 xyz[0] or xyz(1) -> xyz_1
+//!         a column number that does not exist ends step 1
+//!     A3  folded: without case, marks and blanks     elev_yoke1 -> elev,yoke1
+//!     A4  folded, apart from sign marks              az_b -> az b (down)
+//!     A5  as a synonym, apart from sign marks        elevator -> pitch stick
+//! 2   by the logging system's documentation          P -> vehicle_angular_velocity.xyz[0]
+//! 3   as a topic's field, exactly                    az -> IMU.az
+//! 4   without aliases, latitudes and longitudes are removed; of several columns, the only one
+//!     whose unit can be converted to the channel's; otherwise all, and the user must choose
 //! ```
 //!
-//! The columns found are then reduced:
-//!
-//! ```text
-//! 4  without aliases, latitudes and longitudes are removed
-//! 5  of several, the only one whose unit can be converted to the channel's; if that is not exactly
-//!    one, all remain, and the user must choose
-//! ```
-//!
-//! - Sign marks: after 1a, names and aliases are also tried without their own sign marks.
-//! - Sides: step 1 skips columns that the file assigns to the other side (inputs or outputs).
-//!   Only 1b for aliases does not: there the user's word selects a single column. Step 2 concerns
-//!   logs, which assign no sides. Step 3, the last resort, ignores sides; in a table without
-//!   topics it compares whole column names.
-//! - Step 3 is left out for a channel without aliases if the log has documented columns: there a
-//!   field with the same name is another quantity (PIDR.P is a controller term, not a roll rate).
-//! - Step 4: "lat" and "lon" are also synonyms of the lateral and the longitudinal stick. An alias
-//!   is the user's choice, and its column is kept.
+//! From N2 and A2 on, names and aliases are also tried without their own sign marks. Step 1 skips
+//! columns that the file assigns to the other side (inputs or outputs), except in A2, in which the
+//! user's word selects a single column.
 
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::names::channel_alias::{folded_name, same_channel};
@@ -48,10 +37,11 @@ use gdcm_model::units::physical_unit::conversion_factor;
 use super::position_columns::is_position;
 use super::record_table::{RecordColumn, RecordTable};
 
-/// Returns the columns that may hold this channel (steps 1 to 5).
+/// Returns the columns that may hold this channel (steps 1 to 4).
 pub(super) fn candidates(table: &RecordTable, rule: &ChannelRule, side: ChannelSide) -> Vec<usize> {
     let search = ColumnSearch { table, rule, side };
     let spellings = search.spellings();
+    // Steps 1 to 3.
     let mut found = if rule.aliases.is_empty() {
         search.by_name()
     } else {
@@ -63,6 +53,8 @@ pub(super) fn candidates(table: &RecordTable, rule: &ChannelRule, side: ChannelS
     if found.is_empty() && search.may_be_field() {
         found = search.by_field(&spellings);
     }
+    // Step 4. "lat" and "lon" are also synonyms of the lateral and the longitudinal stick; an alias
+    // is the user's choice, and its column is kept.
     if rule.aliases.is_empty() {
         found.retain(|column| !is_position(table, *column, rule));
     }
@@ -123,53 +115,62 @@ impl ColumnSearch<'_> {
         found
     }
 
-    /// Returns the columns with the channel's name (step 1 without aliases, rules a to c).
+    /// Returns the columns with the channel's name (step 1, rules N1 to N3).
     fn by_name(&self) -> Vec<usize> {
         let name = &self.rule.name;
+        // N1.
         let exact = self.own_side(|column| column == name);
         if !exact.is_empty() {
             return exact;
         }
+        // N2.
         let unmarked = without_sign_mark(name);
         let marked = self.own_side(|column| without_sign_mark(column) == unmarked);
         if !marked.is_empty() {
             return marked;
         }
+        // N3.
         self.own_side(|column| same_channel(&without_sign_mark(column), &unmarked))
     }
 
-    /// Returns the columns that the aliases denote (step 1 with aliases, rules a to e). The
-    /// `spellings` are the aliases with and without their sign marks; rule a takes the aliases only
-    /// as given, so that "-az" prefers a column "-az" to a column "az".
+    /// Returns the columns that the aliases denote (step 1, rules A1 to A5). The `spellings` are
+    /// the aliases with and without their sign marks; A1 takes the aliases only as given, so that
+    /// "-az" prefers a column "-az" to a column "az".
     fn by_aliases(&self, spellings: &[String]) -> Vec<usize> {
+        // A1.
         let exact = self.own_side(|column| self.rule.aliases.iter().any(|alias| alias == column));
         if !exact.is_empty() {
             return exact;
         }
+        // A2.
         if let Some(column) = spellings.iter().find_map(|alias| self.table.find(alias)) {
             return vec![column];
         }
         if spellings.iter().any(|alias| is_column_number(alias)) {
             return Vec::new();
         }
+        // A3.
         let folded_spellings: Vec<String> =
             spellings.iter().map(|alias| folded_name(alias)).collect();
         let folded = self.own_side(|column| folded_spellings.contains(&folded_name(column)));
         if !folded.is_empty() {
             return folded;
         }
+        // A4.
         let marked = self
             .own_side(|column| folded_spellings.contains(&folded_name(&without_sign_mark(column))));
         if !marked.is_empty() {
             return marked;
         }
+        // A5.
         self.own_side(|column| {
             let unmarked = without_sign_mark(column);
             spellings.iter().any(|alias| same_channel(&unmarked, alias))
         })
     }
 
-    /// Returns the columns that the logging system's documentation assigns to the channel (step 2).
+    /// Returns the columns that the logging system's documentation assigns to the channel (step 2),
+    /// on any side: logs assign no sides.
     fn by_documentation(&self, spellings: &[String]) -> Vec<usize> {
         self.any_side(|column| match column.meaning {
             Some(meaning) => spellings.iter().any(|name| same_channel(meaning, name)),
@@ -178,7 +179,8 @@ impl ColumnSearch<'_> {
     }
 
     /// Returns whether step 3 applies: the user named the field, or the log has no documented
-    /// columns.
+    /// columns. In a documented log, a field with the channel's name is another quantity (PIDR.P is
+    /// a controller term, not a roll rate).
     fn may_be_field(&self) -> bool {
         if !self.rule.aliases.is_empty() {
             return true;
@@ -188,12 +190,13 @@ impl ColumnSearch<'_> {
         !has_documented
     }
 
-    /// Returns the columns whose name within their topic is in `spellings` (step 3).
+    /// Returns the columns whose name within their topic is in `spellings` (step 3), as a last
+    /// resort on any side; without topics, whole column names are compared.
     fn by_field(&self, spellings: &[String]) -> Vec<usize> {
         self.any_side(|column| spellings.iter().any(|name| column.field() == *name))
     }
 
-    /// Returns the columns whose unit can be converted to the channel's unit (step 5).
+    /// Returns the columns whose unit can be converted to the channel's unit (step 4).
     fn convertible(&self, columns: &[usize]) -> Vec<usize> {
         let mut found = Vec::new();
         for column in columns {

@@ -100,7 +100,7 @@ impl ColumnUse {
         }
     }
 
-    /// Returns the use, with the column taken to be in the channel's unit.
+    /// Confirms that the column is in the channel's unit; the factor stays.
     pub(super) fn in_unit_of_channel(self) -> Self {
         Self {
             unit: UnitBasis::Known,
@@ -108,7 +108,8 @@ impl ColumnUse {
         }
     }
 
-    /// Assumes the channel's unit if the unit is open.
+    /// Assumes the channel's unit if the unit is open; unlike a confirmed unit, an assumed one
+    /// raises a caution.
     pub(super) fn assuming_unit_of_channel(self) -> Self {
         match self.unit {
             UnitBasis::Open => Self {
@@ -124,9 +125,10 @@ impl ColumnUse {
         self.factor * self.remedy.factor
     }
 
-    /// Returns the remedy to store with the dataset: the record's remedy, times the part of the
-    /// factor that cannot be derived again from the unit (the file's, or else the dataset's) and
-    /// from the sign mark in the column name.
+    /// Returns the remedy to store with the dataset, which keeps no layout: the record's remedy,
+    /// times the part of [`Self::factor`] that reading the file again does not give, because it
+    /// follows neither from the unit (the file's, or else the dataset's) nor from the sign mark in
+    /// the column name.
     pub(super) fn kept_remedy(&self, table: &RecordTable, rule: &ChannelRule) -> ChannelRemedy {
         let from_file = match table.columns.get(self.column) {
             Some(column) => factor_from_file(column, rule),

@@ -10,13 +10,13 @@ use super::stamped_channel::StampedChannel;
 const HIGHEST_LINE: f64 = 4.0 / 3.0;
 /// Minimum number of samples per period of the highest line, in a channel and at a requested rate:
 /// with fewer, the band is not visible.
-const NEEDED: f64 = 2.5;
+const LEAST_SAMPLES_A_PERIOD: f64 = 2.5;
 /// Minimum number of samples per period of the highest line, on a clock without a requested rate.
 const LEAST_ON_CLOCK: f64 = 4.0;
 /// Maximum number of samples per period of the highest line, on a clock without a requested rate.
 const MOST_ON_CLOCK: f64 = 20.0;
-/// Ratio of the cut-off to the highest line.
-const CUT_OFF: f64 = 5.0;
+/// Ratio of the cut-off to the highest line, as when records are prepared (M14.1).
+const CUT_OFF_OF_LINE: f64 = 5.0;
 /// Highest cut-off, as a fraction of half the lowest sample rate among the channels and the clock.
 const CUT_OFF_OF_RATE: f64 = 0.8;
 /// Tolerance for a sample just outside an end of the clock, in samples.
@@ -44,11 +44,11 @@ impl CommonClock {
     /// rate gives 20 samples in a period of the highest line; `rate_hz` is a requested rate \[Hz\].
     ///
     /// ```text
-    /// ω2  the upper band end, whi the highest spectral line used, wc the cut-off
+    /// ω2  the upper band end, whi the highest spectral line used
     /// whi = 4/3 ω2
-    /// fs  = the requested rate, or else min(slowest rate, 20 whi/2π), at least 4 whi/2π
-    /// wc  = min(5 whi, 0.8 π · min(slowest rate, fs))
-    /// from the latest first stamp to the earliest last stamp
+    /// rate     fs = the requested rate, or else min(slowest rate, 20 whi/2π), at least 4 whi/2π
+    /// span     from the latest first stamp to the earliest last stamp
+    /// cut-off  wc = min(5 whi, 0.8 π · min(slowest rate, fs))
     /// ```
     ///
     /// # Errors
@@ -80,7 +80,8 @@ impl CommonClock {
         if samples > MOST_SAMPLES {
             return Err(ResamplingError::TooMany(samples));
         }
-        let cutoff = (CUT_OFF * TAU * highest_hz).min(CUT_OFF_OF_RATE * PI * slowest.min(rate));
+        let cutoff =
+            (CUT_OFF_OF_LINE * TAU * highest_hz).min(CUT_OFF_OF_RATE * PI * slowest.min(rate));
         Ok(Self {
             start_s,
             rate_hz: rate,
@@ -128,7 +129,7 @@ fn check_rates(channels: &[StampedChannel], band_end: f64) -> Result<(), Resampl
 /// Returns an error for a rate that is too low for the band.
 fn check_rate(name: &str, rate_hz: f64, band_end: f64) -> Result<(), ResamplingError> {
     let highest_hz = HIGHEST_LINE * band_end / TAU;
-    let needed_hz = NEEDED * highest_hz;
+    let needed_hz = LEAST_SAMPLES_A_PERIOD * highest_hz;
     if rate_hz < needed_hz {
         return Err(ResamplingError::TooSlow {
             topic: name.to_owned(),

@@ -185,7 +185,8 @@ impl LaidOutRecord {
     }
 }
 
-/// Returns what remains of a stored remedy beside the user's decisions about the channel:
+/// Returns what remains of a stored remedy beside the user's decisions about the channel, which
+/// replace a part of it:
 ///
 /// 1. with a user-defined factor or unit: the delay
 /// 2. with an alias that has a sign mark, such as "-az": the delay and the factor's magnitude

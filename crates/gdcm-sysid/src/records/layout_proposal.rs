@@ -46,15 +46,14 @@ impl RecordLayout {
     /// Proposes columns for the time and for each channel.
     ///
     /// ```text
-    /// 1  time     the topics' stamps, if columns have their own clocks (M14.11); else the user's
-    ///             sample time; the user's column; the column named like a time; the file's sample
-    ///             time; else none, with a problem
-    /// 2  channel  by name, or by aliases if it has some (column_candidates); if no input has a
-    ///             candidate, but the file marks equally many columns as inputs (such as the
-    ///             columns of u): these in order (the same for outputs). Neither a column name nor
-    ///             an alias: none, with the problem Unnamed
-    /// 3  factor   the user's; 1 if the channel has no unit; from the user's unit or else the
-    ///             file's; from the rule's unit for files without units; from the only unit in
+    /// 1  time     the first of: the topics' stamps, if columns have their own clocks (M14.11); the
+    ///             user's sample time; the user's column; the column named like a time; the file's
+    ///             sample time; else none, with a problem
+    /// 2  channel  by name, or by aliases if it has some (column_candidates). If no input has a
+    ///             candidate, but the file marks as many columns as inputs (such as those of u):
+    ///             these in order; the same for outputs
+    /// 3  factor   the first of: the user's; 1 if the channel has no unit; from the user's or the
+    ///             file's unit; from the rule's unit for files without units; from the only unit in
     ///             which the samples are plausible; open if there are several, 1 if there is none
     /// 4  sign     by the mark in the alias or in the column name: -R, az (down); a channel NZ from
     ///             a column az needs the user's decision
@@ -79,13 +78,14 @@ impl RecordLayout {
             ..
         } = proposer;
         // Step 5.
-        let is_reported = !problems.is_empty();
+        let is_incomplete = !problems.is_empty();
         for problem in layout.problems(table, channels) {
             let is_missing = matches!(
                 problem,
                 LayoutProblem::NoColumn { .. } | LayoutProblem::NoTime(_)
             );
-            if !(is_missing && is_reported) {
+            // Why a column or the time is missing is already among the problems.
+            if !(is_missing && is_incomplete) {
                 problems.push(problem);
             }
         }

@@ -12,8 +12,8 @@ use super::record_table::RecordTable;
 use super::time_base::TimeBase;
 
 impl RecordLayout {
-    /// Returns the layout with the same columns, by name, in another record; `None` if the other
-    /// record lacks a column.
+    /// Returns this layout for the record `from` with the same columns, by name, in the record
+    /// `other`; `None` if that lacks a column.
     pub fn carried_to(&self, other: &RecordTable, from: &RecordTable) -> Option<Self> {
         let mut layout = self.clone();
         if let Some(time) = self.time {
@@ -52,11 +52,14 @@ impl RecordLayout {
             let before = side.pick(&before.inputs, &before.outputs);
             let after = side.pick(&after.inputs, &after.outputs);
             for (index, own) in uses.iter_mut().enumerate() {
-                let earlier = before.get(index).copied().flatten();
+                let unedited = before.get(index).copied().flatten();
                 let Some(edited) = after.get(index).copied().flatten() else {
+                    // The user removed the column.
                     continue;
                 };
-                if earlier.map(ColumnUse::without_remedy) == Some(edited.without_remedy()) {
+                let is_unchanged =
+                    unedited.map(ColumnUse::without_remedy) == Some(edited.without_remedy());
+                if is_unchanged {
                     continue;
                 }
                 if let Some(column) = column_in_other(edited.column, from, table) {

@@ -41,7 +41,7 @@ const LONGEST_WINDOW_S: f64 = 20.0;
 const FEWEST_SAMPLES: usize = 8;
 /// Number of steps from window to window in a window length.
 const STEPS_A_WINDOW: usize = 8;
-/// Maximum number of steps from the first window to the last.
+/// Maximum number of steps from the first window to the last: one less than windows.
 const MOST_STEPS: usize = 400;
 /// Highest frequency, as a fraction of half the sample rate.
 const HIGHEST_OF_RATE: f64 = 0.9;
@@ -168,16 +168,18 @@ impl FrequencyRows {
     fn power_at(&self, spectrum: &Spectrum, omega: f64) -> f64 {
         let lines = &spectrum.omega;
         let half_row = self.ratio.sqrt();
-        // The clamps keep at least one line, the next above, if none is within half a row; and the
-        // last line if none is above.
-        let next = lines
-            .partition_point(|line| *line < omega)
-            .min(lines.len().saturating_sub(1));
-        let from = lines
-            .partition_point(|line| *line < omega / half_row)
-            .min(next);
-        let until = lines.partition_point(|line| *line <= omega * half_row);
-        (from..until.max(from + 1).min(lines.len()))
+        let first_inside = lines.partition_point(|line| *line < omega / half_row);
+        let end_inside = lines.partition_point(|line| *line <= omega * half_row);
+        let inside = if first_inside < end_inside {
+            first_inside..end_inside
+        } else {
+            // No line is within half a row: the next above, or the last if none is above.
+            let next = lines
+                .partition_point(|line| *line < omega)
+                .min(lines.len().saturating_sub(1));
+            next..(next + 1).min(lines.len())
+        };
+        inside
             .map(|line| spectrum.inputs[(0, line)].norm_sqr())
             .fold(0.0, f64::max)
     }

@@ -58,9 +58,10 @@ fn topic_name(source: &RecordSource, is_one_file: bool) -> String {
 /// Returns each topic's log: "log_7" for "log_7_rates" next to "log_8_rates"; empty without a log.
 ///
 /// ```text
-/// 1  a topic begins at the first separator after which two names agree;
-///    the text before it is the log
-/// 2  several topics confirm a log
+/// names log_7_rates, log_7_pos, log_8_rates
+/// 1  a topic begins at the first separator after which two names agree: "_rates" in log_7_rates
+///    and log_8_rates;  the text before it is the log: log_7, log_8; none for log_7_pos
+/// 2  a log is confirmed if several topics have it
 /// 3  a topic without a confirmed log belongs to the longest confirmed log that begins its name
 /// ```
 pub(super) fn logs_of_topics(names: &[String]) -> Vec<String> {

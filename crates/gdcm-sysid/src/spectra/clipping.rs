@@ -14,16 +14,16 @@ use gdcm_model::statistics::quantile;
 
 use super::value_range::ValueRange;
 
-/// Largest step inside a flat run, relative to the mean step.
-const FLAT: f64 = 1e-3;
+/// Largest step inside a flat run, relative to the mean step (all limits: M14.18).
+const FLAT_STEP: f64 = 1e-3;
 /// Shortest run at a limit, in samples.
-const SHORTEST: f64 = 5.0;
+const SHORTEST_RUN: f64 = 5.0;
 /// Shortest run at a limit, relative to the usual length of flat runs elsewhere.
-const OVER_USUAL: f64 = 3.0;
+const SHORTEST_RUN_OVER_USUAL: f64 = 3.0;
 /// The usual length is this quantile over the flat runs elsewhere.
-const USUAL: f64 = 0.9;
+const USUAL_QUANTILE: f64 = 0.9;
 /// Share of the range, at each end, that counts as a limit.
-const OUTER: f64 = 0.05;
+const OUTER_SHARE: f64 = 0.05;
 /// Largest acceptable share of samples at a limit in a smooth channel.
 const MOST_AT_LIMIT: f64 = 0.005;
 /// Largest acceptable share of samples at a limit in a held channel ([`HELD_SHARE`]), such as a
@@ -46,12 +46,13 @@ impl Clipping {
     /// Measures the share of samples at a limit (steps 1 to 3).
     pub(crate) fn measure(samples: &[f64]) -> Self {
         let steps = samples.windows(2).map(|pair| (pair[1] - pair[0]).abs());
-        let flat = FLAT * steps.sum::<f64>() / samples.len().saturating_sub(1).max(1) as f64;
+        let flat_step =
+            FLAT_STEP * steps.sum::<f64>() / samples.len().saturating_sub(1).max(1) as f64;
         let range = ValueRange::new(samples);
-        let outer = OUTER * (range.greatest - range.least);
+        let outer = OUTER_SHARE * (range.greatest - range.least);
         let mut at_ends = Vec::new();
         let mut elsewhere = Vec::new();
-        for run in samples.chunk_by(|a, b| (b - a).abs() <= flat) {
+        for run in samples.chunk_by(|a, b| (b - a).abs() <= flat_step) {
             let mean = run.iter().sum::<f64>() / run.len() as f64;
             if mean >= range.greatest - outer || mean <= range.least + outer {
                 at_ends.push(run.len());
@@ -62,15 +63,15 @@ impl Clipping {
         let flat_elsewhere: Vec<usize> =
             elsewhere.into_iter().filter(|length| *length > 1).collect();
         // Step 1, then steps 2 and 3.
-        let shortest = SHORTEST.max(OVER_USUAL * usual_length(&flat_elsewhere));
+        let shortest = SHORTEST_RUN.max(SHORTEST_RUN_OVER_USUAL * usual_length(&flat_elsewhere));
         let at_limit: usize = at_ends
             .into_iter()
             .filter(|length| *length as f64 >= shortest)
             .sum();
-        let held = share_of(flat_elsewhere.iter().sum(), samples);
+        let flat_share_elsewhere = share_of(flat_elsewhere.iter().sum(), samples);
         Self {
             share: share_of(at_limit, samples),
-            most: if held > HELD_SHARE {
+            most: if flat_share_elsewhere > HELD_SHARE {
                 MOST_AT_LIMIT_HELD
             } else {
                 MOST_AT_LIMIT
@@ -89,7 +90,7 @@ fn usual_length(runs: &[usize]) -> f64 {
         return 1.0;
     }
     let mut lengths: Vec<f64> = runs.iter().map(|length| *length as f64).collect();
-    quantile(&mut lengths, USUAL)
+    quantile(&mut lengths, USUAL_QUANTILE)
 }
 
 fn share_of(count: usize, samples: &[f64]) -> f64 {

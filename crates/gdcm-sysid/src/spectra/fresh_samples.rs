@@ -11,9 +11,11 @@ use super::stairs::Stairs;
 
 /// Longest stair \[s\]; a channel that is constant for longer is at rest.
 const LONGEST_STAIR_S: f64 = 0.1;
-/// Differences between two values below this share of the range are no logging step.
-const NO_STEP: f64 = 1e-9;
-/// Share of a stair after which an equal sample counts as the next stair.
+/// Differences between two values below this share of the range are rounding errors, and no logging
+/// step.
+const ROUNDING: f64 = 1e-9;
+/// Share of a stair after which an equal sample counts as the next stair; below 1, so that a
+/// slightly short stair counts too.
 const NEXT_STAIR: f64 = 0.9;
 
 /// A channel's samples, at its own sample time.
@@ -57,11 +59,11 @@ impl FreshSamples {
         let (Some(least), Some(greatest)) = (values.first(), values.last()) else {
             return f64::INFINITY;
         };
-        let no_step = NO_STEP * (greatest - least);
+        let rounding = ROUNDING * (greatest - least);
         values
             .windows(2)
             .map(|pair| pair[1] - pair[0])
-            .filter(|difference| *difference > no_step)
+            .filter(|difference| *difference > rounding)
             .fold(f64::INFINITY, f64::min)
     }
 }

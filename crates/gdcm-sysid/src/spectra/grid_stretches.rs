@@ -1,12 +1,12 @@
 //! Reads a record's samples on its uniform grid, and divides them into parts in which missing
 //! samples can be estimated (M14.1, M14.21).
 //!
-//! A *stretch* is the grid points between two gaps in the stamps (`record_clock`).
-//!
 //! ```text
-//! row   all channels' values at a grid point;   hole: consecutive rows in which a value is missing
-//! run   consecutive rows between holes
-//! hat   an unknown for missing samples (`gap_hat`);   l outputs, n lines
+//! stretch  grid points between two gaps in the stamps (`record_clock`)
+//! row      all channels' values at a grid point
+//! hole     consecutive rows in which a value is missing;   run: consecutive rows between holes
+//! gap      a channel's missing samples;   hat: an unknown for them (`gap_hat`)
+//! l outputs, n lines
 //! 1  a part: from the first run to the last
 //! 2  no hole in the part, or the hats of all its gaps < 1/10 of the 2 l n real values in its
 //!    outputs' lines:   it stays whole
@@ -183,22 +183,23 @@ impl GridRows {
         }
         let outputs = self.width - self.inputs;
         let mut parts = Vec::new();
-        // Run ranges that are still to be examined, the earliest last.
-        let mut open = Vec::new();
+        // Parts that are still to be examined, as ranges of runs, the earliest last.
+        let mut to_examine = Vec::new();
         if !runs.is_empty() {
-            open.push(0..runs.len());
+            to_examine.push(0..runs.len());
         }
         // Step 2.
-        while let Some(range) = open.pop() {
+        while let Some(range) = to_examine.pop() {
             let rows = runs[range.start].start..runs[range.end - 1].end;
+            // A hole has the number of the run before it.
             let holes = range.start..range.end - 1;
             let hats: usize = hats_after[holes.clone()].iter().sum();
             let values = 2 * outputs * line_count(lines, sample_time_s * rows.len() as f64);
             let worst = holes.max_by_key(|&run| hats_after[run]);
             match worst {
                 Some(worst) if VALUES_A_HAT * hats >= values => {
-                    open.push(worst + 1..range.end);
-                    open.push(range.start..worst + 1);
+                    to_examine.push(worst + 1..range.end);
+                    to_examine.push(range.start..worst + 1);
                 }
                 _ => parts.push(rows),
             }

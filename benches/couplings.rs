@@ -131,11 +131,11 @@ fn ratios(_: &mut Criterion) {
         .unknowns;
     let ours = shortest(10, || fit_couplings(&problem, &Sequential, &Unobserved));
     let plain = shortest(2, || {
-        (0..problem.options.solves).for_each(|_| drop(black_box(plain_solve(&problem, &unknowns))))
+        (0..problem.options.passes).for_each(|_| drop(black_box(plain_solve(&problem, &unknowns))))
     });
     let rows =
         problem.conditions.len() * problem.omega.len() * problem.outputs() * problem.inputs() * 2;
-    let products = (problem.options.solves * rows * unknowns.len() * unknowns.len()) as f64;
+    let products = (problem.options.passes * rows * unknowns.len() * unknowns.len()) as f64;
     println!(
         "joint fit of {} unknowns, one core: {ours:.2?}; a plain assembly of its {rows} rows takes {:.1} times as long ({:.1} G \
          multiply-adds, more than the block structure of the fit requires)",

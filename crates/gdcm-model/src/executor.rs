@@ -23,7 +23,7 @@ impl Executor for Sequential {
 }
 
 /// An argument, and the result that its task computes from it.
-struct Piece<S, T> {
+struct TaskSlot<S, T> {
     /// Taken by the task when it begins.
     argument: Option<S>,
     /// `None` until the task is done.
@@ -37,24 +37,24 @@ pub fn each<S: Send, T: Send>(
     arguments: impl IntoIterator<Item = S>,
     function: impl Fn(S) -> T + Sync,
 ) -> Vec<T> {
-    let mut pieces: Vec<Piece<S, T>> = arguments
+    let mut slots: Vec<TaskSlot<S, T>> = arguments
         .into_iter()
-        .map(|argument| Piece {
+        .map(|argument| TaskSlot {
             argument: Some(argument),
             result: None,
         })
         .collect();
     let function = &function;
-    let mut tasks: Vec<Task<'_>> = Vec::with_capacity(pieces.len());
-    for piece in &mut pieces {
+    let mut tasks: Vec<Task<'_>> = Vec::with_capacity(slots.len());
+    for slot in &mut slots {
         tasks.push(Box::new(move || {
-            piece.result = piece.argument.take().map(function);
+            slot.result = slot.argument.take().map(function);
         }));
     }
     executor.carry_out(tasks);
-    let mut results = Vec::with_capacity(pieces.len());
-    for piece in pieces {
-        results.extend(piece.result.or_else(|| piece.argument.map(function)));
+    let mut results = Vec::with_capacity(slots.len());
+    for slot in slots {
+        results.extend(slot.result.or_else(|| slot.argument.map(function)));
     }
     results
 }

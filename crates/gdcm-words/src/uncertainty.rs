@@ -96,7 +96,7 @@ pub fn second_variable_text(test: &SecondVariableTest) -> String {
         Err(error) => return format!("{variable}: {error}"),
     };
     let percent = 100.0 * effect.effect;
-    let detectable = 100.0 * effect.visible;
+    let detectable = 100.0 * effect.detectable;
     let sign = if percent < 0.0 { "−" } else { "+" };
     format!(
         "net gain {sign}{:.1} % from the lowest to the highest {variable}, which is {} in the \
@@ -191,7 +191,7 @@ pub fn second_variable_table(dataset: &Dataset, uncertainty: &Uncertainty) -> Ta
             }
             Ok(effect) => cells.extend([
                 signed(100.0 * effect.effect, 1),
-                percent(Some(effect.visible)),
+                percent(Some(effect.detectable)),
                 probability(test.p_holm),
                 percent(effect.left_out_without),
                 percent(effect.left_out_with),

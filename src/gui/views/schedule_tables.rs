@@ -218,7 +218,7 @@ pub(super) fn coefficient_table(state: &State) -> Option<Table> {
     let mut table = Table::new(title, columns);
     for row in coefficients.rows {
         let mut cells = vec![row.name];
-        for figure in &row.figures {
+        for figure in &row.values {
             cells.push(decimals(*figure, 5));
         }
         table.row(cells);

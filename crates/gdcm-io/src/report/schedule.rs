@@ -213,7 +213,7 @@ fn add_coefficients(page: &mut Page, analysis: &Analysis, schedule: &Schedule) {
     let mut table = Table::new(title, columns);
     for row in &coefficients.rows {
         let mut cells = vec![row.name.clone()];
-        cells.extend(row.figures.iter().map(|value| compact(*value)));
+        cells.extend(row.values.iter().map(|value| compact(*value)));
         table.row(cells);
     }
     page.wide_table(&table, COLUMNS);

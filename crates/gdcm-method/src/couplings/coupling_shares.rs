@@ -3,7 +3,8 @@
 //!
 //! ```text
 //! feedback:  share of K_ij <- |K_ij| max |R'_jl|  over all inputs l, conditions and frequencies
-//! mixing:    share of M_ij <- M~_ij;  between the cyclic inputs also as swashplate phase, atan M~_ij
+//! mixing:    share of M_ij <- M~_ij;  between the cyclic inputs also as swashplate phase,
+//!            atan M~_ij
 //! ```
 //!
 //! `M~` is the normalised input mixing (diagonal 1), `K` the output feedback, `R'` the flight
@@ -146,9 +147,9 @@ pub fn mixing_shares(
     shares
 }
 
-/// Returns the two cyclic inputs' indices: the inputs whose only on-axis response is a rate. `None`
-/// unless exactly two inputs qualify; a pedal, for example, does not qualify if it also has an
-/// on-axis lateral acceleration.
+/// Returns the two cyclic inputs' indices: the inputs whose only on-axis response is a rate, as
+/// those of a helicopter's cyclic stick are, pitch and roll rate. `None` unless exactly two inputs
+/// qualify; a pedal, for example, does not qualify if it also has an on-axis lateral acceleration.
 pub fn cyclic_inputs(
     on_axis: &PairTable<bool>,
     is_rate: impl Fn(usize) -> bool,

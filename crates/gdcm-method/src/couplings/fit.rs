@@ -1,5 +1,6 @@
-//! Fits mixing and feedback to all conditions at once, by successive linear least-squares problems
-//! (steps 2 to 7 of `couplings`, M16.2).
+//! Fits mixing and feedback to all conditions at once, by successive linear least-squares problems,
+//! the *passes* (M16.2): weights and closed loop of a pass follow from the couplings of the pass
+//! before.
 
 use gdcm_model::executor::{Executor, each};
 use gdcm_model::progress::{Cancelled, Progress, Shares};
@@ -35,15 +36,14 @@ const BLOCK_MEMORY: usize = 256 << 20;
 /// Step name in progress reports.
 const FITTING: &str = "mixing and feedback";
 
-/// Fits the couplings by successive weighted linear least-squares problems, one per pass: weights
-/// and closed loop follow from the previous pass's couplings (M16.2).
+/// Fits the couplings, an input mixing `M` and a feedback `K` from outputs to inputs.
 ///
 /// ```text
 /// 1  outputs that can be fed back, unknowns in M and K, conditions arranged by frequency
-/// 2  matrices <- M = I, K = 0                                              step 2 in `couplings`
+/// 2  matrices <- M = I, K = 0
 /// 3  for each pass (five by default):
-/// 4     normal equations with weights and loop of the matrices             steps 4 to 6
-/// 5     matrices <- their regularised solution                             step 7
+/// 4     normal equations with the weights and the closed loop that follow from the matrices
+/// 5     matrices <- their solution, regularised towards M = I, K = 0
 /// 6  refuse a mixing that reverses an input
 /// ```
 ///
@@ -72,14 +72,14 @@ pub fn fit_couplings(
             conditions: conditions.len(),
         });
     }
-    let solves = problem.options.solves.max(1);
+    let passes = problem.options.passes.max(1);
     let fitting = Fitting {
         conditions: &conditions,
         fed_back: &fed_back,
         layout: UnknownLayout::new(&unknowns, problem.inputs(), &fed_back),
         shares: Shares::new(progress),
         // Each pass has one step for each condition, and one for the solution.
-        share: 1.0 / (solves * (conditions.len() + 1)) as f64,
+        progress_share: 1.0 / (passes * (conditions.len() + 1)) as f64,
     };
     // Step 2
     let mut matrices = CouplingMatrices::none(airspeeds, problem.inputs(), problem.outputs());
@@ -87,7 +87,7 @@ pub fn fit_couplings(
     let mut residual = 0.0;
     let mut undetermined = Vec::new();
     // Steps 3 to 5
-    for _ in 0..solves {
+    for _ in 0..passes {
         let pass = fitting
             .equations(&matrices, executor)?
             .solve(&unknowns, problem.options.ridge)?;
@@ -130,7 +130,7 @@ struct Fitting<'a> {
     layout: UnknownLayout,
     shares: Shares<'a>,
     /// Progress share, 0 to 1, for one condition, or for the solution, in a pass.
-    share: f64,
+    progress_share: f64,
 }
 
 impl Fitting<'_> {
@@ -140,18 +140,22 @@ impl Fitting<'_> {
     /// order.
     fn equations(
         &self,
-        last: &CouplingMatrices,
+        couplings: &CouplingMatrices,
         executor: &dyn Executor,
     ) -> Result<NormalEquations<'_>, CouplingError> {
-        let inputs = last.feedback().nrows();
-        let airspeeds = last.airspeeds();
+        let inputs = couplings.feedback().nrows();
+        let airspeeds = couplings.airspeeds();
         let block_bytes = ConditionBlocks::bytes(inputs, self.fed_back.len()).max(1);
-        let together = (BLOCK_MEMORY / block_bytes).max(1);
+        let parallel_conditions = (BLOCK_MEMORY / block_bytes).max(1);
         let mut equations = NormalEquations::zeros(&self.layout, inputs, self.fed_back.len());
-        for conditions in self.conditions.chunks(together) {
+        for conditions in self.conditions.chunks(parallel_conditions) {
             let blocks = each(executor, conditions, |condition| {
-                let blocks =
-                    ConditionBlocks::new(condition, last, self.fed_back, self.shares.progress())?;
+                let blocks = ConditionBlocks::new(
+                    condition,
+                    couplings,
+                    self.fed_back,
+                    self.shares.progress(),
+                )?;
                 self.advance()?;
                 Ok::<_, CouplingError>(blocks)
             });
@@ -164,6 +168,6 @@ impl Fitting<'_> {
 
     /// Reports one condition, or the solution, in a pass as done.
     fn advance(&self) -> Result<(), Cancelled> {
-        self.shares.advance(self.share, FITTING)
+        self.shares.advance(self.progress_share, FITTING)
     }
 }

@@ -21,7 +21,8 @@ use super::fit::{CouplingFit, fit_couplings};
 use super::problem::CouplingProblem;
 use crate::uncertainty::student_quantile;
 
-/// Minimum condition count for error bars.
+/// Minimum condition count for error bars: two conditions leave one degree of freedom, for which
+/// Student's quantile is above 6 at the 90 % level, so that the bars would say nothing.
 pub const LEAST_CONDITIONS: usize = 3;
 
 /// A fit to all conditions but one.

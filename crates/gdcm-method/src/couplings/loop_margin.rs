@@ -17,7 +17,9 @@ pub struct LoopMargin {
 }
 
 impl LoopMargin {
-    /// Margin below which the loop is reported as close to ringing.
+    /// Margin below which the loop is reported as close to ringing: disturbances at an input are
+    /// then amplified more than twofold, because the loop's largest gain there is the reciprocal of
+    /// the margin.
     pub const CAUTION: f64 = 0.5;
 
     /// Returns the minimum over singular values given at `omega` \[rad/s\]; `None` if no value is

@@ -1,16 +1,25 @@
 //! Normal equations for a pass: sum over the conditions, scaling, regularisation (M16.2).
 //!
+//! A *pass* is one of the successive least-squares problems in the fit. `G theta = b` are its
+//! equations for the entries `theta` in the mixing M (m x m) and the feedback K. The unknowns in
+//! column i of M occur only in the equations for input i, those in K in the equations for every
+//! input, so that G is an arrow:
+//!
 //! ```text
-//! 1  G, b <- the conditions' blocks summed, with powers of the scaled airspeed v for the unknowns M_ji
-//! 2  divide rows and columns by the root of the diagonal, because the entries of K differ in unit
-//! 3  (G + rho diag G) theta = b + rho diag G theta_0,   theta_0: M = I, K = 0;  solved as an arrow
-//!    an unknown with a zero on the diagonal, which no response determines, keeps its value in theta_0
+//! [ A_1            B_1 ]   [ M_1 ]   [ b_1 ]        M_i: unknowns in column i of M
+//! [      ...       ... ] . [ ... ] = [ ... ]
+//! [            A_m B_m ]   [ M_m ]   [ b_m ]
+//! [ B_1^T ... B_m^T C  ]   [ K   ]   [ b_K ]
+//!
+//! 1  G, b <- sum of the conditions' blocks, times v^power for each unknown in M         (add)
+//! 2  divide rows and columns by the root of G's diagonal, because the entries of K
+//!    differ in unit                                                                 (scaling)
+//! 3  solve (G + rho diag G) theta = b + rho diag G theta_0,  theta_0: M = I, K = 0    (solve)
 //! ```
 //!
-//! A *pass* is one of the successive least-squares problems in the fit. `G theta = b` are the
-//! equations for the entries `theta` in the mixing M and the feedback K (`condition_blocks`), `rho`
-//! is the relative regularisation. `arrow_system` defines how G's blocks are arranged,
-//! `unknown_layout` how the unknowns are ordered.
+//! `v` is the scaled airspeed, on which the diagonal of M may depend as a polynomial; `rho` is the
+//! relative regularisation. An unknown with a zero on the diagonal, which no response determines,
+//! keeps its value in `theta_0`.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -24,12 +33,12 @@ use super::unknown_layout::{FeedbackUnknown, MixingUnknown, UnknownLayout};
 /// The normal equations, `G theta = b`.
 pub(super) struct NormalEquations<'a> {
     layout: &'a UnknownLayout,
-    /// Equations for the unknowns in M, for each input column.
+    /// `A_i`, `B_i` and `b_i` for each input column i.
     columns: Vec<ArrowColumn>,
-    /// Normal matrix entries for two unknowns in K.
-    feedback: PairProducts,
-    /// Right-hand side for the unknowns in K: rows by fed-back output, columns by input.
-    right: DMatrix<f64>,
+    /// `C`: an entry for every two unknowns in K.
+    corner: PairProducts,
+    /// `b_K`: rows by fed-back output, columns by input.
+    corner_right: DMatrix<f64>,
 }
 
 /// Solution of a pass.
@@ -57,8 +66,8 @@ impl<'a> NormalEquations<'a> {
         Self {
             layout,
             columns,
-            feedback: PairProducts::zeros(pair_count(fed_back), inputs),
-            right: DMatrix::zeros(fed_back, inputs),
+            corner: PairProducts::zeros(pair_count(fed_back), inputs),
+            corner_right: DMatrix::zeros(fed_back, inputs),
         }
     }
 
@@ -72,20 +81,20 @@ impl<'a> NormalEquations<'a> {
         {
             add_column(equations, blocks, mixing, &self.layout.feedback, v);
         }
-        self.feedback.add(&blocks.feedback);
-        self.right += &blocks.right;
+        self.corner.add(&blocks.feedback);
+        self.corner_right += &blocks.right;
     }
 
-    /// Returns the normal matrix entry for two unknowns in K.
-    fn feedback_entry(&self, row: &FeedbackUnknown, column: &FeedbackUnknown) -> f64 {
+    /// Returns the entry in `C` for two unknowns in K.
+    fn corner_entry(&self, row: &FeedbackUnknown, column: &FeedbackUnknown) -> f64 {
         // Stored for output pairs in ascending order; G is symmetric.
-        let count = self.right.nrows();
+        let count = self.corner_right.nrows();
         if row.fed_back <= column.fed_back {
             let pair = pair_index(row.fed_back, column.fed_back, count);
-            self.feedback.entry(pair, row.input, column.input)
+            self.corner.entry(pair, row.input, column.input)
         } else {
             let pair = pair_index(column.fed_back, row.fed_back, count);
-            self.feedback.entry(pair, column.input, row.input)
+            self.corner.entry(pair, column.input, row.input)
         }
     }
 
@@ -102,7 +111,7 @@ impl<'a> NormalEquations<'a> {
             unknowns: unknowns.len(),
         };
         let scaling = self.scaling(unknowns, ridge);
-        let scaled = self.scaled(&scaling);
+        let scaled = self.scaled_system(&scaling);
         let Some(solution) = scaled.solve() else {
             return Err(singular);
         };
@@ -135,13 +144,14 @@ impl<'a> NormalEquations<'a> {
             }
         }
         for unknown in &self.layout.feedback {
-            scaling.set(unknown.index, self.feedback_entry(unknown, unknown));
+            scaling.set(unknown.index, self.corner_entry(unknown, unknown));
         }
         scaling
     }
 
-    /// Returns the equations scaled to a unit diagonal and regularised towards no couplings.
-    fn scaled(&self, scaling: &Scaling<'_>) -> ArrowSystem {
+    /// Returns the equations scaled to a unit diagonal and regularised towards no couplings; each
+    /// solution value is to be multiplied by the unknown's scale.
+    fn scaled_system(&self, scaling: &Scaling<'_>) -> ArrowSystem {
         let feedback = &self.layout.feedback;
         let columns = self
             .columns
@@ -150,15 +160,16 @@ impl<'a> NormalEquations<'a> {
             .map(|(equations, mixing)| scaled_column(equations, mixing, feedback, scaling))
             .collect();
         let mut corner = DMatrix::from_fn(feedback.len(), feedback.len(), |row, column| {
-            let entry = self.feedback_entry(&feedback[row], &feedback[column]);
+            let entry = self.corner_entry(&feedback[row], &feedback[column]);
             scaling.scale[feedback[row].index] * entry * scaling.scale[feedback[column].index]
         });
         for (row, unknown) in feedback.iter().enumerate() {
-            corner[(row, row)] += scaling.regularisation(unknown.index);
+            corner[(row, row)] += scaling.ridge_term(unknown.index);
         }
         let right = DVector::from_fn(feedback.len(), |row, _| {
             let unknown = &feedback[row];
-            scaling.right(unknown.index, self.right[(unknown.fed_back, unknown.input)])
+            let right = self.corner_right[(unknown.fed_back, unknown.input)];
+            scaling.scaled_right(unknown.index, right)
         });
         ArrowSystem {
             columns,
@@ -206,13 +217,13 @@ fn scaled_column(
         scale[row] * equations.block[(row, column)] * scale[column]
     });
     for (row, unknown) in mixing.iter().enumerate() {
-        block[(row, row)] += scaling.regularisation(unknown.index);
+        block[(row, row)] += scaling.ridge_term(unknown.index);
     }
     let border = DMatrix::from_fn(mixing.len(), feedback.len(), |row, column| {
         scale[row] * equations.border[(row, column)] * scaling.scale[feedback[column].index]
     });
     let right = DVector::from_fn(mixing.len(), |row, _| {
-        scaling.right(mixing[row].index, equations.right[row])
+        scaling.scaled_right(mixing[row].index, equations.right[row])
     });
     ArrowColumn {
         block,
@@ -221,12 +232,13 @@ fn scaled_column(
     }
 }
 
-/// Factors that scale the normal matrix to a unit diagonal, and the regularisation towards no
-/// couplings.
+/// Factors that scale `G` to a unit diagonal, and the regularisation towards no couplings. On a
+/// unit diagonal, the term `rho diag G` of step 3 is simply `rho`.
 struct Scaling<'a> {
     unknowns: &'a [Unknown],
+    /// `rho`.
     ridge: f64,
-    /// Scale for each unknown; 1 for an undetermined unknown.
+    /// `1 / sqrt(G_kk)` for each unknown k; 1 for an undetermined unknown.
     scale: Vec<f64>,
     /// For each unknown, whether its diagonal entry is positive.
     is_determined: Vec<bool>,
@@ -251,9 +263,10 @@ impl<'a> Scaling<'a> {
         }
     }
 
-    /// Returns the regularisation term on the diagonal; 1 for an undetermined unknown, whose
-    /// diagonal is zero.
-    fn regularisation(&self, index: usize) -> f64 {
+    /// Returns the regularisation term that is added to an unknown's scaled diagonal entry; 1 for
+    /// an undetermined unknown, whose diagonal entry is zero, so that its equation is `theta =
+    /// theta_0`.
+    fn ridge_term(&self, index: usize) -> f64 {
         if self.is_determined[index] {
             self.ridge
         } else {
@@ -261,10 +274,10 @@ impl<'a> Scaling<'a> {
         }
     }
 
-    /// Scales and regularises an entry in the right-hand side `b`.
-    fn right(&self, index: usize, right: f64) -> f64 {
+    /// Scales and regularises an unknown's entry `right` in `b`.
+    fn scaled_right(&self, index: usize, right: f64) -> f64 {
         let scale = self.scale[index];
-        scale * right + self.regularisation(index) * self.unknowns[index].uncoupled() / scale
+        scale * right + self.ridge_term(index) * self.unknowns[index].uncoupled() / scale
     }
 
     /// Returns the indices of the unknowns that no response determines.

@@ -1,17 +1,21 @@
 //! Products summed over frequencies, for each factor pair and each input pair in the normal
 //! equations (M16.2).
 //!
-//! At each frequency there are factors `t_0 = 1, t_1, ...` and an m x m matrix `P = F^H q^2 F`;
-//! both are defined in `condition_blocks`. `Re conj(t_a) t_b P_jl`, summed over the frequencies, is
-//! a difference between two matrix products, with a row for each pair `a <= b` and a column for
-//! each pair `j <= l`:
+//! An unknown's column in the design matrix is, at each frequency, column j of the physics response
+//! `F` with its loop closed (p x m) times a factor `t_a`: `t_0 = 1` for an entry of the mixing, and
+//! for an entry of the feedback `t_1, t_2, ...`, the flight responses of the fed-back outputs to
+//! the same input. With the response weights `q`, two unknowns `(a, j)` and `(b, l)` have the
+//! normal matrix entry
 //!
 //! ```text
-//! Re(conj(t_a) t_b P_jl) = Re(conj(t_a) t_b) Re P_jl - Im(conj(t_a) t_b) Im P_jl,   P_lj = conj P_jl
+//! sum over frequencies of Re(conj(t_a) t_b P_jl),   P = F^H q^2 F, m x m,  P_lj = conj P_jl
+//! Re(conj(t_a) t_b P_jl) = Re(conj(t_a) t_b) Re P_jl - Im(conj(t_a) t_b) Im P_jl
 //! ```
 //!
-//! Pairs are ordered by their first, then by their second index: (0,0), (0,1), ... (1,1), (1,2), ...
-//! The pairs with `t_0` therefore come before all others.
+//! Summed over the frequencies, this is a difference between two matrix products, with a row for
+//! each pair `a <= b` and a column for each pair `j <= l`. Pairs are ordered by their first, then
+//! by their second index: (0,0), (0,1), ... (1,1), (1,2), ... The pairs with `t_0` therefore come
+//! before all others.
 
 use nalgebra::{Complex, DMatrix, DMatrixView};
 
@@ -74,8 +78,8 @@ impl PairProducts {
         self.add_rows_from(chunk, chunk.t_re.nrows() - self.real.nrows());
     }
 
-    /// Adds a chunk's products; `first` is the chunk's row that belongs to the first row here.
-    fn add_rows_from(&mut self, chunk: &ProductChunk, first: usize) {
+    /// Adds a chunk's products; `first_row` is the chunk's row that belongs to the first row here.
+    fn add_rows_from(&mut self, chunk: &ProductChunk, first_row: usize) {
         let (rows, columns) = self.real.shape();
         if rows == 0 || chunk.filled == 0 {
             return;
@@ -84,7 +88,7 @@ impl PairProducts {
             (&mut self.real, &chunk.t_re, &chunk.p_re),
             (&mut self.imaginary, &chunk.t_im, &chunk.p_im),
         ] {
-            let factors = factors.view((first, 0), (rows, chunk.filled));
+            let factors = factors.view((first_row, 0), (rows, chunk.filled));
             // The transpose, read without copying: rows by frequency, columns by input pair.
             let weighted = DMatrixView::from_slice_with_strides(
                 weighted.as_slice(),
@@ -171,9 +175,9 @@ impl ProductChunk {
         let t_re = &mut self.t_re.as_mut_slice()[self.filled * pairs..][..pairs];
         let t_im = &mut self.t_im.as_mut_slice()[self.filled * pairs..][..pairs];
         let mut pair = 0;
-        for (a, left) in t.iter().enumerate() {
-            for right in &t[a..] {
-                let product = left.conj() * right;
+        for (a, t_a) in t.iter().enumerate() {
+            for t_b in &t[a..] {
+                let product = t_a.conj() * t_b;
                 t_re[pair] = product.re;
                 t_im[pair] = product.im;
                 pair += 1;
@@ -204,17 +208,17 @@ fn add_outer_product(re: &[f64], im: &[f64], squared: f64, p_re: &mut [f64], p_i
     // Index for the pair (j, j); the pairs (j, l) with l > j follow it.
     let mut start = 0;
     for j in 0..re.len() {
-        let left_re = squared * re[j];
-        let left_im = squared * im[j];
+        let weighted_re = squared * re[j];
+        let weighted_im = squared * im[j];
         // From here on, `re` and `im` begin with `f_j`.
         let re = &re[j..];
         let im = &im[j..];
         let end = start + re.len();
         for (sum, (re, im)) in p_re[start..end].iter_mut().zip(re.iter().zip(im)) {
-            *sum += left_re * re + left_im * im;
+            *sum += weighted_re * re + weighted_im * im;
         }
         for (sum, (re, im)) in p_im[start..end].iter_mut().zip(re.iter().zip(im)) {
-            *sum += left_re * im - left_im * re;
+            *sum += weighted_re * im - weighted_im * re;
         }
         start = end;
     }

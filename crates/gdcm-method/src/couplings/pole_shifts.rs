@@ -33,7 +33,8 @@ impl CouplingMatrices {
 /// once.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PoleShift {
-    /// Pole without coupling \[rad/s\]; `None` for an additional state (delays inside the loop).
+    /// Pole without coupling \[rad/s\]; `None` for an additional state, from the Padé approximation
+    /// of a delay inside the loop.
     pub before: Option<Complex<f64>>,
     /// Pole with coupling \[rad/s\].
     pub after: Complex<f64>,
@@ -55,14 +56,19 @@ impl PoleShift {
     /// # Errors
     /// [`PoleShiftError::Modes`] if the eigenvalues are unavailable.
     pub fn between(before: &StateSpace, after: &StateSpace) -> Result<Vec<Self>, PoleShiftError> {
-        let before = modes(before)?;
-        let after = modes(after)?;
-        let tracks = mode_tracks(&[&before, &after], 1);
+        /// Positions of the two models in the list that is tracked.
+        const BEFORE: usize = 0;
+        const AFTER: usize = 1;
+        let modes_before = modes(before)?;
+        let modes_after = modes(after)?;
+        // `after` is the reference, so that each of its poles has a track, also one without a
+        // counterpart.
+        let tracks = mode_tracks(&[&modes_before, &modes_after], AFTER);
         let mut shifts = Vec::with_capacity(tracks.len());
         for track in tracks {
             shifts.push(Self {
-                before: track.modes[0].map(|mode| before[mode].pole),
-                after: after[track.reference].pole,
+                before: track.modes[BEFORE].map(|mode| modes_before[mode].pole),
+                after: modes_after[track.reference].pole,
             });
         }
         Ok(shifts)

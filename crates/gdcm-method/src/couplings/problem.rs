@@ -61,7 +61,7 @@ pub struct CouplingProblem {
     pub kind: CouplingKind,
     /// The frequencies \[rad/s\] for all responses, ascending.
     pub omega: Arc<[f64]>,
-    /// The on-axis responses, which have twice the weight.
+    /// The on-axis responses, which have twice the weight `q` (`weighted_condition`).
     pub on_axis: PairTable<bool>,
     pub conditions: Vec<CouplingCondition>,
     pub options: CouplingOptions,
@@ -71,11 +71,13 @@ pub struct CouplingProblem {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CouplingOptions {
     /// `rho`: regularisation towards M = I, K = 0, relative to each unknown's diagonal entry in the
-    /// normal matrix.
+    /// normal matrix. In the example, values from 2e-4 to 5e-3 give the same couplings.
     pub ridge: f64,
-    /// Count of passes, each a linear least-squares problem.
-    pub solves: usize,
-    /// Highest power of the scaled airspeed on the diagonal of `M`.
+    /// Count of passes, each a linear least-squares problem. In the example, J after three passes
+    /// and after six agrees within 0.1.
+    pub passes: usize,
+    /// Highest power of the scaled airspeed on the diagonal of `M` while it is fitted. The diagonal
+    /// is the level of the inputs, which the channel gains take over afterwards (M16.3).
     pub degree: usize,
     /// Neighbouring airspeeds that differ by at most this \[kt\] count as equal (M11b).
     pub airspeed_tolerance_kt: f64,
@@ -85,7 +87,7 @@ impl Default for CouplingOptions {
     fn default() -> Self {
         Self {
             ridge: 1e-3,
-            solves: 5,
+            passes: 5,
             degree: 2,
             airspeed_tolerance_kt: 2.0,
         }
@@ -124,8 +126,8 @@ impl CouplingProblem {
         airspeeds.ok_or(CouplingError::NothingToFit { conditions: 0 })
     }
 
-    /// Returns the outputs with a column in `K`: all that the feedback can use, or none for a mixing
-    /// alone.
+    /// Returns the outputs with a column in `K`: all that the feedback can use, or none for a
+    /// mixing alone.
     ///
     /// An input column in the equations needs every such output's flight response. An output that
     /// is missing for some input with data, at all frequencies in all conditions, is therefore left

@@ -1,26 +1,28 @@
-//! How the normal equations order the unknowns (M16.2).
+//! How the normal equations order the unknowns (M16.2): the entries of the input mixing `M`, whose
+//! diagonal may be a polynomial in the scaled airspeed, and of the feedback `K` from outputs to
+//! inputs. A *fed-back* output is one with a column in `K`.
 
 use super::unknown::Unknown;
 
 /// The unknowns in equation order: first the unknowns in `M`, by input column, then the unknowns in
 /// `K`.
 pub(super) struct UnknownLayout {
-    /// The unknowns `M_ji` by input column i.
+    /// The unknowns `M_ji` by input column i: those that occur only in the equations for input i.
     pub(super) mixing: Vec<Vec<MixingUnknown>>,
     pub(super) feedback: Vec<FeedbackUnknown>,
 }
 
-/// A coefficient in `M_ji`.
+/// A coefficient in `M_ji`, the share that input j receives from input i.
 pub(super) struct MixingUnknown {
     /// Index among the unknowns.
     pub(super) index: usize,
     /// The input j.
     pub(super) to: usize,
-    /// Power of the scaled airspeed.
+    /// Power of the scaled airspeed; 0 off the diagonal.
     pub(super) power: i32,
 }
 
-/// An entry `K_jo`.
+/// An entry `K_jo`, the feedback from output o to input j.
 pub(super) struct FeedbackUnknown {
     /// Index among the unknowns.
     pub(super) index: usize,
@@ -45,8 +47,8 @@ impl UnknownLayout {
                     power: power as i32,
                 }),
                 Unknown::Feedback { input, output } => {
-                    let place = fed_back.iter().position(|&known| known == output);
-                    if let Some(fed_back) = place {
+                    let position = fed_back.iter().position(|&known| known == output);
+                    if let Some(fed_back) = position {
                         layout.feedback.push(FeedbackUnknown {
                             index,
                             input,

@@ -2,7 +2,8 @@
 //! M16.2).
 //!
 //! ```text
-//! q = s w_gamma / max(|R'|, |H_c| / 2) / (1 + (e s / 10)^2)^(1/4),    s = w_p / sqrt(1 + (sd / 0.06)^2)
+//! s = w_p / sqrt(1 + (sd / 0.06)^2)
+//! q = s w_gamma / max(|R'|, |H_c| / 2) / (1 + (e s / 10)^2)^(1/4)
 //! ```
 //!
 //! | symbol | meaning |
@@ -14,8 +15,9 @@
 //! | `e^2` | summand of J: squared errors of `H_c` against `R'` in dB and deg (M4) |
 //!
 //! A *pass* is one of the successive least-squares problems in the fit. `s` and `w_gamma` are the
-//! same in all passes; `|H_c|` and `e` change. The last factor of `q` is small where the error is
-//! large, so that outliers do not dominate.
+//! same in all passes; `|H_c|` and `e` change. The division by `max(|R'|, |H_c| / 2)` makes errors
+//! relative; its second value keeps a zero of `R'` from dominating. The last factor of `q` is small
+//! where the error is large, so that outliers do not dominate.
 
 use nalgebra::Complex;
 
@@ -25,11 +27,13 @@ use super::problem::{CouplingCondition, CouplingProblem};
 use crate::fidelity::summand;
 
 /// `w_p`: an on-axis response's weight relative to the others.
-const ON_AXIS: f64 = 2.0;
-/// Standard deviation of `ln H` that reduces a response's weight `s` by the factor `1 / sqrt(2)`.
-const DEVIATION: f64 = 0.06;
-/// `e s` that reduces a frequency's weight by the factor `2^(-1/4)`, as an outlier.
-const OUTLIER: f64 = 10.0;
+const ON_AXIS_WEIGHT: f64 = 2.0;
+/// Standard deviation of `ln H` that halves a response's squared weight `s^2`: 0.5 dB in magnitude,
+/// 3.4 deg in phase.
+const HALVING_DEVIATION: f64 = 0.06;
+/// `e s` that reduces a frequency's weight by the factor `2^(-1/4)`, as an outlier: for `s = 1`, an
+/// error with J = 100, the limit for an acceptable model (M4).
+const OUTLIER_ERROR: f64 = 10.0;
 
 /// Weight factors that do not change between passes.
 #[derive(Clone, Copy, Debug, Default)]
@@ -125,7 +129,7 @@ impl<'a> WeightedCondition<'a> {
     ) -> bool {
         let fixed = &self.weights[(k * self.inputs + input) * self.outputs..][..self.outputs];
         let flight = self.flight(k, input);
-        let mut counts = false;
+        let mut has_weight = false;
         for (output, squared) in squared.iter_mut().enumerate() {
             let weight = fixed[output];
             *squared = if weight.s > 0.0 {
@@ -133,9 +137,9 @@ impl<'a> WeightedCondition<'a> {
             } else {
                 0.0
             };
-            counts |= *squared > 0.0;
+            has_weight |= *squared > 0.0;
         }
-        counts
+        has_weight
     }
 }
 
@@ -146,7 +150,7 @@ impl FixedWeight {
         let flight_square = flight.norm_sqr();
         let error_db = 10.0 * (coupled_square / flight_square).log10();
         let error_deg = (coupled * flight.conj()).arg().to_degrees();
-        let robust = (1.0 + summand(error_db, error_deg) * (self.s / OUTLIER).powi(2)).sqrt();
+        let robust = (1.0 + summand(error_db, error_deg) * (self.s / OUTLIER_ERROR).powi(2)).sqrt();
         let scale = flight_square.max(0.25 * coupled_square);
         let squared = self.s * self.s * self.coherence / scale / robust;
         // Not finite if a response is zero, which has no value in dB, or if the scale overflows.
@@ -188,7 +192,7 @@ fn fixed_weights(
     let coherence = condition
         .coherence
         .as_ref()
-        .map(|table| table.map(|_, coherence| coherence.spread(&coherence.weights, points)));
+        .map(|table| table.map(|_, coherence| coherence.on_grid(&coherence.weights, points)));
     let mut weights = Vec::with_capacity(points * inputs * outputs);
     for k in 0..points {
         let has_row: Vec<bool> = (0..outputs)
@@ -202,11 +206,11 @@ fn fixed_weights(
                     .all(|&output| has_flight(condition, Pair::new(output, input), k));
             for (output, &has_row) in has_row.iter().enumerate() {
                 let pair = Pair::new(output, input);
-                let counts = has_column
+                let is_weighted = has_column
                     && condition.usable[pair]
                     && has_row
                     && has_flight(condition, pair, k);
-                weights.push(if counts {
+                weights.push(if is_weighted {
                     FixedWeight {
                         s: deviation_weight(problem, condition, pair, k),
                         coherence: match &coherence {
@@ -230,12 +234,16 @@ fn deviation_weight(
     pair: Pair,
     k: usize,
 ) -> f64 {
-    let axis = if problem.on_axis[pair] { ON_AXIS } else { 1.0 };
+    let w_p = if problem.on_axis[pair] {
+        ON_AXIS_WEIGHT
+    } else {
+        1.0
+    };
     let deviation = match &condition.deviation {
         Some(table) => table[pair][k],
         None => 0.0,
     };
-    let s = axis / (1.0 + (deviation / DEVIATION).powi(2)).sqrt();
+    let s = w_p / (1.0 + (deviation / HALVING_DEVIATION).powi(2)).sqrt();
     s.max(0.0)
 }
 

@@ -3,11 +3,16 @@
 //! ```text
 //! min sum_i c_ij(i)    c_ij: cost of column j for row i, j(i): the column of row i
 //!
-//! 1  row potentials u_i, column potentials v_j, with u_i + v_j <= c_ij, equal where row i has column j
-//! 2  for each row i in turn: grow a tree of columns from i by the least reduced cost c_ij - u_i - v_j (Dijkstra),
-//!    moving the potentials with it, until a column is free
+//! 1  row potentials u_i, column potentials v_j, with u_i + v_j <= c_ij, equal where row i has
+//!    column j
+//! 2  for each row i in turn: grow a tree of columns from i, each time by the column with the least
+//!    reduced cost c_ij - u_i - v_j (Dijkstra), moving the potentials with it, until a column is
+//!    free
 //! 3  shift the assignments along the path from i to that column
 //! ```
+//!
+//! With such potentials an assignment whose entries all have reduced cost 0 is optimal: any other
+//! costs at least the sum of the potentials.
 //!
 //! Kuhn, "The Hungarian method for the assignment problem", Naval Research Logistics Quarterly 2,
 //! 1955, with shortest augmenting paths: Jonker & Volgenant, Computing 38, 1987. O(rows^2 columns).
@@ -53,13 +58,14 @@ impl Assignment {
     fn augment(&mut self, new: usize, cost: &impl Fn(usize, usize) -> f64) {
         let columns = self.row_of.len();
         // Least reduced cost from the tree to each column outside it.
-        let mut distance = vec![f64::INFINITY; columns];
-        // The previous column on the path from the new row; `None` at the row itself.
-        let mut before: Vec<Option<usize>> = vec![None; columns];
+        let mut least_reduced = vec![f64::INFINITY; columns];
+        // The previous column on the path from the new row; `None` if the row itself comes before.
+        let mut previous: Vec<Option<usize>> = vec![None; columns];
         let mut in_tree = vec![false; columns];
-        // The column that joined the tree last, and its row; at first, the new row itself.
-        let mut last = None;
+        // The column that joined the tree last, and its row; at first, no column and the new row.
+        let mut joined = None;
         let mut row = new;
+        // Step 2
         loop {
             for column in 0..columns {
                 if in_tree[column] {
@@ -67,58 +73,59 @@ impl Assignment {
                 }
                 let reduced =
                     cost(row, column) - self.row_potentials[row] - self.column_potentials[column];
-                if reduced < distance[column] {
-                    distance[column] = reduced;
-                    before[column] = last;
+                if reduced < least_reduced[column] {
+                    least_reduced[column] = reduced;
+                    previous[column] = joined;
                 }
             }
-            let open = (0..columns).filter(|&column| !in_tree[column]);
-            let Some(next) = open.min_by(|&a, &b| distance[a].total_cmp(&distance[b])) else {
+            let outside = (0..columns).filter(|&column| !in_tree[column]);
+            let nearest = outside.min_by(|&a, &b| least_reduced[a].total_cmp(&least_reduced[b]));
+            let Some(next) = nearest else {
                 return;
             };
-            // Step 2
-            self.shift_potentials(new, &in_tree, &mut distance, next);
+            self.shift_potentials(new, &in_tree, &mut least_reduced, next);
             in_tree[next] = true;
-            last = Some(next);
+            joined = Some(next);
             match self.row_of[next] {
-                Some(owner) => row = owner,
+                Some(assigned_row) => row = assigned_row,
                 None => break,
             }
         }
         // Step 3
-        self.shift_assignments(new, &before, last);
+        self.shift_assignments(new, &previous, joined);
     }
 
     /// Moves the potentials in the tree (the row `new`, the columns in the tree and their rows) so
-    /// that the reduced cost to `next` becomes zero.
+    /// that the reduced cost to `next` becomes zero; the reduced costs to the columns outside the
+    /// tree fall by the same step.
     fn shift_potentials(
         &mut self,
         new: usize,
         in_tree: &[bool],
-        distance: &mut [f64],
+        least_reduced: &mut [f64],
         next: usize,
     ) {
-        let step = distance[next];
+        let step = least_reduced[next];
         self.row_potentials[new] += step;
-        for (column, owner) in self.row_of.iter().enumerate() {
-            match owner {
-                Some(owner) if in_tree[column] => {
-                    self.row_potentials[*owner] += step;
+        for (column, row) in self.row_of.iter().enumerate() {
+            match row {
+                Some(row) if in_tree[column] => {
+                    self.row_potentials[*row] += step;
                     self.column_potentials[column] -= step;
                 }
-                _ => distance[column] -= step,
+                _ => least_reduced[column] -= step,
             }
         }
     }
 
-    /// Gives each column on the path back from `last` the previous column's row, and the first
-    /// column the row `new`.
-    fn shift_assignments(&mut self, new: usize, before: &[Option<usize>], last: Option<usize>) {
-        let mut at = last;
-        while let Some(column) = at {
-            at = before[column];
-            self.row_of[column] = match at {
-                Some(previous) => self.row_of[previous],
+    /// Gives each column on the path back from the free column `end` the previous column's row, and
+    /// the first column the row `new`.
+    fn shift_assignments(&mut self, new: usize, previous: &[Option<usize>], end: Option<usize>) {
+        let mut on_path = end;
+        while let Some(column) = on_path {
+            on_path = previous[column];
+            self.row_of[column] = match on_path {
+                Some(previous_column) => self.row_of[previous_column],
                 None => Some(new),
             };
         }

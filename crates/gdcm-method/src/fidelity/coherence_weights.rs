@@ -8,8 +8,8 @@ use gdcm_model::response::interpolation::coherence_at;
 /// The frequencies at which a response has sufficient coherence, each with its weight.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CoherenceWeights {
-    /// Indices of these frequencies on the grid, ascending.
-    places: Vec<usize>,
+    /// Indices of these frequencies on the grid of all frequencies, ascending.
+    grid_indices: Vec<usize>,
     /// The weighted frequencies \[rad/s\].
     pub omega: Vec<f64>,
     /// `W` at each frequency.
@@ -34,11 +34,11 @@ impl CoherenceWeights {
         valid_band: Option<[f64; 2]>,
     ) -> Self {
         let mut selected = Self {
-            places: Vec::new(),
+            grid_indices: Vec::new(),
             omega: Vec::new(),
             weights: Vec::new(),
         };
-        for (place, (&omega, &coherence)) in omega.iter().zip(coherence).enumerate() {
+        for (grid_index, (&omega, &coherence)) in omega.iter().zip(coherence).enumerate() {
             let is_valid = match valid_band {
                 Some([low, high]) => (low..=high).contains(&omega),
                 None => true,
@@ -46,7 +46,7 @@ impl CoherenceWeights {
             let weight = coherence_weight(coherence);
             // A frequency with zero weight would only increase the count by which J is divided.
             if coherence >= threshold && weight > 0.0 && is_valid {
-                selected.places.push(place);
+                selected.grid_indices.push(grid_index);
                 selected.omega.push(omega);
                 selected.weights.push(weight);
             }
@@ -72,18 +72,21 @@ impl CoherenceWeights {
         }))
     }
 
-    /// Spreads values at these frequencies over a grid with `points` points, NaN elsewhere.
-    pub fn spread(&self, values: &[f64], points: usize) -> Vec<f64> {
-        let mut spread = vec![f64::NAN; points];
-        for (&place, &value) in self.places.iter().zip(values) {
-            spread[place] = value;
+    /// Places values at these frequencies on the grid, which has `points` points; NaN elsewhere.
+    pub fn on_grid(&self, values: &[f64], points: usize) -> Vec<f64> {
+        let mut on_grid = vec![f64::NAN; points];
+        for (&grid_index, &value) in self.grid_indices.iter().zip(values) {
+            on_grid[grid_index] = value;
         }
-        spread
+        on_grid
     }
 
     /// Picks the values at these frequencies from a value at each grid point.
-    pub(super) fn pick(&self, values: &[f64]) -> Vec<f64> {
-        self.places.iter().map(|&place| values[place]).collect()
+    pub(super) fn at_frequencies(&self, values: &[f64]) -> Vec<f64> {
+        self.grid_indices
+            .iter()
+            .map(|&grid_index| values[grid_index])
+            .collect()
     }
 }
 
@@ -102,13 +105,13 @@ mod tests {
             [coherence_weight(0.6), coherence_weight(0.9)]
         );
         assert_eq!(
-            coherence_weights.pick(&[10.0, 20.0, 30.0, 40.0, 50.0]),
+            coherence_weights.at_frequencies(&[10.0, 20.0, 30.0, 40.0, 50.0]),
             [30.0, 40.0]
         );
-        let spread = coherence_weights.spread(&[30.0, 40.0], 5);
-        assert_eq!(spread[2..4], [30.0, 40.0]);
-        for place in [0, 1, 4] {
-            assert!(spread[place].is_nan());
+        let on_grid = coherence_weights.on_grid(&[30.0, 40.0], 5);
+        assert_eq!(on_grid[2..4], [30.0, 40.0]);
+        for grid_index in [0, 1, 4] {
+            assert!(on_grid[grid_index].is_nan());
         }
     }
 

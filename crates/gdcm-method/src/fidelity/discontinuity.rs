@@ -57,11 +57,11 @@ impl Discontinuity {
     /// [`DiscontinuityError`] if the bundle is too small, a model has no perturbation, every
     /// perturbation is zero, or the fit fails or is cancelled.
     pub fn fit(
-        distance: &BundleDistance,
+        distances: &BundleDistance,
         bundle: &[PerturbedModel<'_>],
         cancelled: &dyn Fn() -> bool,
     ) -> Result<Self, DiscontinuityError> {
-        let compared = distance.measured().compared_models();
+        let compared = distances.measured().compared_models();
         if compared.len() < LEAST_MODELS {
             return Err(DiscontinuityError::TooFewModels {
                 found: compared.len(),
@@ -69,10 +69,10 @@ impl Discontinuity {
         }
         let models: Vec<_> = compared.iter().map(|&model| bundle[model]).collect();
         let trims = ScaledTrims::new(&models)?;
-        let weights = fit_weights(distance, &compared, &trims, cancelled)?;
+        let weights = fit_weights(distances, &compared, &trims, cancelled)?;
         let mut ratios = vec![None; bundle.len()];
         for (place, &model) in compared.iter().enumerate() {
-            ratios[model] = ratio(distance, &compared, &trims, &weights, place);
+            ratios[model] = ratio(distances, &compared, &trims, &weights, place);
         }
         Ok(Self {
             ratios,
@@ -83,14 +83,14 @@ impl Discontinuity {
     /// Returns `r_ab` of a model, given by its index in the bundle, for each other model `b` in
     /// bundle order (step 3): their median is `r_a`. Empty for a model that is set aside.
     ///
-    /// `distance` and `bundle` are those of the fit.
+    /// `distances` and `bundle` are those of the fit.
     pub fn pair_ratios(
         &self,
-        distance: &BundleDistance,
+        distances: &BundleDistance,
         bundle: &[PerturbedModel<'_>],
         model: usize,
     ) -> Vec<f64> {
-        let compared = distance.measured().compared_models();
+        let compared = distances.measured().compared_models();
         let Some(place) = compared.iter().position(|&other| other == model) else {
             return Vec::new();
         };
@@ -103,7 +103,7 @@ impl Discontinuity {
             .iter()
             .map(|coordinate| coordinate.weight)
             .collect();
-        pair_ratios(distance, &compared, &trims, &weights, place)
+        pair_ratios(distances, &compared, &trims, &weights, place)
     }
 
     /// Returns `sqrt(sum_k w_k (p_ak - p_bk)^2)` for two trims: the distance explained by their
@@ -131,19 +131,20 @@ impl Discontinuity {
     }
 }
 
-/// Step 2: fits the weights `w_k` to the squared distances between all compared models.
+/// Step 2: fits the weights `w_k` to the squared distances between all compared models, which
+/// `compared` lists by index in the bundle. Their index in `compared` is their *place*.
 fn fit_weights(
-    distance: &BundleDistance,
+    distances: &BundleDistance,
     compared: &[usize],
     trims: &ScaledTrims<'_>,
     cancelled: &dyn Fn() -> bool,
 ) -> Result<Vec<f64>, FitError> {
     let mut rows = Vec::new();
     let mut squares = Vec::new();
-    // `a`, `b`: places in `compared`, each pair of models once.
+    // `a`, `b`: places, each pair of models once.
     for a in 0..compared.len() {
         for b in a + 1..compared.len() {
-            if let Some(distance) = distance.between(compared[a], compared[b]) {
+            if let Some(distance) = distances.between(compared[a], compared[b]) {
                 squares.push(distance.powi(2));
                 rows.push(trims.squared_offsets(a, b));
             }
@@ -155,40 +156,40 @@ fn fit_weights(
 /// Step 3: computes `r_a` for the compared model at place `a`; `None` if it has no fitted distance
 /// from any other model.
 fn ratio(
-    distance: &BundleDistance,
+    distances: &BundleDistance,
     compared: &[usize],
     trims: &ScaledTrims<'_>,
     weights: &[f64],
     a: usize,
 ) -> Option<f64> {
-    let mut to_others = pair_ratios(distance, compared, trims, weights, a);
-    if to_others.is_empty() {
+    let mut ratios = pair_ratios(distances, compared, trims, weights, a);
+    if ratios.is_empty() {
         None
     } else {
-        Some(median(&mut to_others))
+        Some(median(&mut ratios))
     }
 }
 
 /// Step 3: computes `r_ab` for the compared model at place `a` and each other model `b` from which
 /// its fitted distance is not zero.
 fn pair_ratios(
-    distance: &BundleDistance,
+    distances: &BundleDistance,
     compared: &[usize],
     trims: &ScaledTrims<'_>,
     weights: &[f64],
     a: usize,
 ) -> Vec<f64> {
-    let mut to_others = Vec::new();
+    let mut ratios = Vec::new();
     for (b, &other) in compared.iter().enumerate() {
-        let fitted = trims.fitted_square(a, b, weights);
+        let fitted_square = trims.fitted_square(a, b, weights);
         if b != a
-            && fitted > 0.0
-            && let Some(distance) = distance.between(compared[a], other)
+            && fitted_square > 0.0
+            && let Some(distance) = distances.between(compared[a], other)
         {
-            to_others.push(distance / fitted.sqrt());
+            ratios.push(distance / fitted_square.sqrt());
         }
     }
-    to_others
+    ratios
 }
 
 /// A perturbation coordinate's contribution to the squared distance.
@@ -241,8 +242,8 @@ pub enum DiscontinuityError {
 #[derive(Debug)]
 struct ScaledTrims<'a> {
     /// Each coordinate's maximum magnitude over the compared models, by name; none is zero.
-    largest: BTreeMap<&'a str, f64>,
-    /// `p_ak`: coordinates `k` for each model `a`, ordered as in `largest`.
+    largest_magnitudes: BTreeMap<&'a str, f64>,
+    /// `p_ak`: coordinates `k`, ordered as in `largest_magnitudes`, for the model at place `a`.
     scaled: Vec<Vec<f64>>,
 }
 
@@ -257,21 +258,21 @@ impl<'a> ScaledTrims<'a> {
             };
             perturbations.push(perturbation);
         }
-        let mut largest: BTreeMap<&str, f64> = BTreeMap::new();
+        let mut largest_magnitudes: BTreeMap<&str, f64> = BTreeMap::new();
         for perturbation in &perturbations {
             for (name, value) in *perturbation {
-                let entry = largest.entry(name).or_default();
-                *entry = entry.max(value.abs());
+                let largest = largest_magnitudes.entry(name).or_default();
+                *largest = largest.max(value.abs());
             }
         }
-        largest.retain(|_, magnitude| *magnitude > 0.0);
-        if largest.is_empty() {
+        largest_magnitudes.retain(|_, magnitude| *magnitude > 0.0);
+        if largest_magnitudes.is_empty() {
             return Err(DiscontinuityError::AllZero);
         }
         let mut scaled = Vec::with_capacity(perturbations.len());
         for perturbation in perturbations {
-            let mut coordinates = Vec::with_capacity(largest.len());
-            for (name, magnitude) in &largest {
+            let mut coordinates = Vec::with_capacity(largest_magnitudes.len());
+            for (name, magnitude) in &largest_magnitudes {
                 coordinates.push(match perturbation.get(*name) {
                     Some(value) => value / magnitude,
                     None => 0.0,
@@ -279,7 +280,10 @@ impl<'a> ScaledTrims<'a> {
             }
             scaled.push(coordinates);
         }
-        Ok(Self { largest, scaled })
+        Ok(Self {
+            largest_magnitudes,
+            scaled,
+        })
     }
 
     /// Returns `(p_ak - p_bk)^2` for each coordinate `k`.
@@ -303,7 +307,7 @@ impl<'a> ScaledTrims<'a> {
     /// Joins the fitted weights with their coordinates' names and magnitudes.
     fn coordinate_weights(self, weights: Vec<f64>) -> Vec<CoordinateWeight> {
         let mut joined = Vec::with_capacity(weights.len());
-        for ((name, largest), weight) in self.largest.into_iter().zip(weights) {
+        for ((name, largest), weight) in self.largest_magnitudes.into_iter().zip(weights) {
             joined.push(CoordinateWeight {
                 name: name.to_owned(),
                 largest,

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! d(a, b) = sqrt(mean over the compared responses of J),   J with the mean over frequency
-//! J = J(a against b); if either has coherence, (J with the weights of a + J with the weights of b) / 2
+//! J = J(a against b); if either has coherence, (J with a's weights + J with b's weights) / 2
 //! ```
 //!
 //! A *bundle* is a condition's physics models, or its identified models; J is the cost of the
@@ -48,9 +48,10 @@ impl ComparedModel<'_> {
 /// calls for different `a` are independent tasks.
 ///
 /// J does not depend on which model is the reference, but its coherence weights do (M4a), and in a
-/// bundle either model can be the reference: if either has coherence, J is computed with the weights
-/// of each and averaged, so that a distance does not depend on the models' order. A response without any weighted frequency is compared over all
-/// frequencies, so that poorly measured models do not appear similar.
+/// bundle either model can be the reference: if either has coherence, J is computed with the
+/// weights of each and averaged, so that a distance does not depend on the models' order. A
+/// response without any weighted frequency is compared over all frequencies, so that poorly
+/// measured models do not appear similar.
 pub fn distances_from(a: usize, models: &[ComparedModel<'_>], compared: &[Pair]) -> Vec<f64> {
     models[a + 1..]
         .iter()
@@ -84,7 +85,7 @@ fn cost_between(a: &ComparedModel<'_>, b: &ComparedModel<'_>, pair: Pair) -> Opt
 /// (M5b).
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeasuredPairs {
-    /// The responses marked in `measuring` ([`MeasuredPairs::new`]) that at least one model has.
+    /// The responses from which distances are computed, as far as at least one model has them.
     pub compared: Vec<Pair>,
     /// Compared responses that each model lacks: zero or not finite somewhere in the band. A model
     /// that lacks any is *set aside*: it takes no part in distances, suggestions and
@@ -93,8 +94,9 @@ pub struct MeasuredPairs {
 }
 
 impl MeasuredPairs {
-    /// Finds the available and the missing responses in a bundle's models among those marked in
-    /// `measuring`.
+    /// Finds the available and the missing responses in a bundle's models among those from which
+    /// distances are computed, marked in `measuring`: the dataset's on-axis responses, or all if
+    /// none is on-axis.
     pub fn new(responses: &[PolarResponse], measuring: &PairTable<bool>) -> Self {
         let compared: Vec<Pair> = measuring
             .marked()

@@ -1,7 +1,8 @@
 //! Mismatch between a simulated response and its reference, frequency by frequency.
 //!
 //! ```text
-//! e_dB = |H_sim|_dB - |H_ref|_dB,   Delta phi = arg(H_sim conj(H_ref)), unwrapped over frequency (M3, M6b)
+//! e_dB = |H_sim|_dB - |H_ref|_dB
+//! Delta phi = arg(H_sim conj(H_ref)), unwrapped over frequency (M3, M6b)
 //! ```
 //!
 //! `H_sim` is the simulated response, `H_ref` its reference. The errors cover the *grid*, all
@@ -57,8 +58,8 @@ impl Mismatch {
             return None;
         }
         Some(Self {
-            magnitude_db: coherence_weights.pick(&self.magnitude_db),
-            phase: coherence_weights.pick(&self.phase),
+            magnitude_db: coherence_weights.at_frequencies(&self.magnitude_db),
+            phase: coherence_weights.at_frequencies(&self.phase),
             coherence_weights: Some(coherence_weights.clone()),
             turn: self.turn,
         })
@@ -80,12 +81,12 @@ impl Mismatch {
         }
     }
 
-    /// Spreads values at the errors' frequencies over a grid with `points` points; NaN at
+    /// Places values at the errors' frequencies on the grid, which has `points` points; NaN at
     /// frequencies without weight.
     pub fn on_grid(&self, values: Vec<f64>, points: usize) -> Vec<f64> {
         match &self.coherence_weights {
             None => values,
-            Some(coherence_weights) => coherence_weights.spread(&values, points),
+            Some(coherence_weights) => coherence_weights.on_grid(&values, points),
         }
     }
 
@@ -127,7 +128,7 @@ impl Mismatch {
     /// [`Mismatch::on_grid`].
     fn at_errors(&self, values: &[f64]) -> Vec<f64> {
         match &self.coherence_weights {
-            Some(weights) => weights.pick(values),
+            Some(weights) => weights.at_frequencies(values),
             None => values.to_vec(),
         }
     }

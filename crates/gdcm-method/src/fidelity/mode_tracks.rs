@@ -53,11 +53,11 @@ pub fn mode_tracks(models: &[&[Mode]], reference: usize) -> Vec<ModeTrack> {
     // Step 1
     let matches: Vec<Vec<Option<usize>>> = models
         .iter()
-        .map(|model| matched(reference_modes, model))
+        .map(|model| match_modes(reference_modes, model))
         .collect();
     let mut tracks = Vec::new();
-    for (mode, reference_mode) in reference_modes.iter().enumerate() {
-        let modes: Vec<Option<usize>> = matches.iter().map(|matched| matched[mode]).collect();
+    for (index, reference_mode) in reference_modes.iter().enumerate() {
+        let modes: Vec<Option<usize>> = matches.iter().map(|matches| matches[index]).collect();
         let poles: Vec<Option<Complex<f64>>> = models
             .iter()
             .zip(&modes)
@@ -67,7 +67,7 @@ pub fn mode_tracks(models: &[&[Mode]], reference: usize) -> Vec<ModeTrack> {
         let is_mirror =
             reference_mode.pole.im < 0.0 && poles.iter().flatten().all(|pole| pole.im < 0.0);
         if !is_mirror {
-            tracks.push(track(mode, modes, &poles));
+            tracks.push(track(index, modes, &poles));
         }
     }
     tracks
@@ -101,21 +101,21 @@ fn track(reference: usize, modes: Vec<Option<usize>>, poles: &[Option<Complex<f6
 
 /// Step 1: returns the match in `model` for each mode in `reference`; `None` for a mode without a
 /// match in a smaller model. The assignment's rows are the smaller model's modes.
-fn matched(reference: &[Mode], model: &[Mode]) -> Vec<Option<usize>> {
+fn match_modes(reference: &[Mode], model: &[Mode]) -> Vec<Option<usize>> {
     let mut matches = vec![None; reference.len()];
     if reference.len() <= model.len() {
         let columns = cheapest_assignment(reference.len(), model.len(), |row, column| {
             (reference[row].pole - model[column].pole).norm()
         });
-        for (place, mode) in columns.into_iter().enumerate() {
-            matches[place] = Some(mode);
+        for (reference_mode, mode) in columns.into_iter().enumerate() {
+            matches[reference_mode] = Some(mode);
         }
     } else {
         let columns = cheapest_assignment(model.len(), reference.len(), |row, column| {
             (reference[column].pole - model[row].pole).norm()
         });
-        for (mode, place) in columns.into_iter().enumerate() {
-            matches[place] = Some(mode);
+        for (mode, reference_mode) in columns.into_iter().enumerate() {
+            matches[reference_mode] = Some(mode);
         }
     }
     matches

@@ -6,19 +6,21 @@ use nalgebra::Complex;
 const STEPS: i32 = 600;
 /// Step between two compared delays \[s\].
 const STEP_S: f64 = 1e-3;
-/// Steps between neighbouring delays in the coarse grid.
+/// Steps between neighbouring delays in the coarse grid: with more, fewer coarse and more fine
+/// delays are evaluated.
 const COARSE: i32 = 16;
 
-/// Returns the delay \[s\] among -0.600, -0.599 ... 0.600 with the largest likeness `L = sum
-/// cos(phase - omega delay)`; the first, if several are equal (M6b).
+/// Returns the delay \[s\] among -0.600, -0.599 ... 0.600 that agrees best with a phase, by the
+/// agreement `L = sum cos(phase - omega delay)`; the first, if several are equal (M6b).
 ///
 /// ```text
 /// 1  L at every 16th delay (coarse grid)
-/// 2  L at each of the 16 delays around a coarse delay (fine grid), unless L cannot rise to the maximum of step 1
-///    there: it rises by at most sum omega per second, because |dL / d delay| <= sum omega
+/// 2  L at each of the 16 delays around a coarse delay (fine grid), unless L cannot rise to the
+///    maximum of step 1 there: it rises by at most sum omega per second, because
+///    |dL / d delay| <= sum omega
 /// ```
 pub(super) fn nearest_pure_delay_s(phase: &[f64], omega: &[f64]) -> f64 {
-    // Step 1
+    // Step 1: up to half a coarse step beyond the end, so that every delay is near a coarse one.
     let coarse_steps: Vec<i32> = (-STEPS..=STEPS + COARSE / 2)
         .step_by(COARSE as usize)
         .collect();
@@ -27,17 +29,17 @@ pub(super) fn nearest_pure_delay_s(phase: &[f64], omega: &[f64]) -> f64 {
         step_s: delay_s(COARSE),
         count: coarse_steps.len(),
     };
-    let coarse = likenesses(phase, omega, &coarse_grid);
+    let coarse = agreements(phase, omega, &coarse_grid);
     let greatest = coarse.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     // Maximum rise in L within half a coarse step; the added 1e-9 per term exceeds the sums'
     // rounding error.
     let rise = delay_s(COARSE / 2) * omega.iter().map(|omega| omega.abs()).sum::<f64>()
         + 1e-9 * phase.len() as f64;
     // Step 2
-    let mut best_likeness = f64::NEG_INFINITY;
+    let mut best_agreement = f64::NEG_INFINITY;
     let mut best_s = 0.0;
-    for (step, likeness) in coarse_steps.into_iter().zip(coarse) {
-        if likeness + rise < greatest {
+    for (step, agreement) in coarse_steps.into_iter().zip(coarse) {
+        if agreement + rise < greatest {
             continue;
         }
         // Fine grid: half a coarse step to either side.
@@ -48,10 +50,10 @@ pub(super) fn nearest_pure_delay_s(phase: &[f64], omega: &[f64]) -> f64 {
             step_s: STEP_S,
             count: (end - first) as usize,
         };
-        let fine = likenesses(phase, omega, &fine_grid);
-        for (step, likeness) in (first..end).zip(fine) {
-            if likeness > best_likeness {
-                best_likeness = likeness;
+        let fine = agreements(phase, omega, &fine_grid);
+        for (step, agreement) in (first..end).zip(fine) {
+            if agreement > best_agreement {
+                best_agreement = agreement;
                 best_s = delay_s(step);
             }
         }
@@ -73,7 +75,7 @@ fn delay_s(step: i32) -> f64 {
 
 /// Computes `L = sum cos(phase - omega delay)` for each delay in a grid, as the real part of
 /// `sum e^(j (phase - omega delay))`.
-fn likenesses(phase: &[f64], omega: &[f64], grid: &DelayGrid) -> Vec<f64> {
+fn agreements(phase: &[f64], omega: &[f64], grid: &DelayGrid) -> Vec<f64> {
     // The summands are rotated from each delay to the next: computing every cosine takes a dozen
     // times as long.
     let mut summands = Vec::with_capacity(phase.len());
@@ -84,21 +86,21 @@ fn likenesses(phase: &[f64], omega: &[f64], grid: &DelayGrid) -> Vec<f64> {
         .iter()
         .map(|omega| Complex::from_polar(1.0, -omega * grid.step_s))
         .collect();
-    let mut likenesses = Vec::with_capacity(grid.count);
+    let mut agreements = Vec::with_capacity(grid.count);
     for _ in 0..grid.count {
-        likenesses.push(summands.iter().map(|summand| summand.re).sum());
+        agreements.push(summands.iter().map(|summand| summand.re).sum());
         for (summand, rotation) in summands.iter_mut().zip(&rotations) {
             *summand *= rotation;
         }
     }
-    likenesses
+    agreements
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn likeness(phase: &[f64], omega: &[f64], delay_s: f64) -> f64 {
+    fn agreement(phase: &[f64], omega: &[f64], delay_s: f64) -> f64 {
         phase
             .iter()
             .zip(omega)
@@ -117,12 +119,13 @@ mod tests {
             for scatter in [1.0, 0.05] {
                 let phase: Vec<f64> = phase.iter().zip(&omega).map(|(phase, omega)| scatter * phase + slope * omega).collect();
                 let greatest = (-600..=600)
-                    .map(|step| likeness(&phase, &omega, 1e-3 * f64::from(step)))
+                    .map(|step| agreement(&phase, &omega, 1e-3 * f64::from(step)))
                     .fold(f64::NEG_INFINITY, f64::max);
                 let found = nearest_pure_delay_s(&phase, &omega);
                 // Two sums of at most 60 cosines, of angles in the hundreds, differ in their last
                 // digits.
-                proptest::prop_assert!(likeness(&phase, &omega, found) >= greatest - 1e-10, "{} s", found);
+                let best = agreement(&phase, &omega, found);
+                proptest::prop_assert!(best >= greatest - 1e-10, "{} s", found);
             }
         }
     }

@@ -1,7 +1,8 @@
 //! Chooses a bundle's representative (M5).
 //!
 //! ```text
-//! s_a = mean over b != a of d(a, b)    the representative is the model with the smallest score s_a (medoid)
+//! s_a = mean over b != a of d(a, b)
+//! representative <- the model with the smallest score s_a (medoid)
 //! ```
 //!
 //! `d(a, b)` is the distance between two models (`distance`).

@@ -3,19 +3,21 @@
 //!
 //! ```text
 //! [ S   B ] [ x ]   [ g ]       x = (z, tau): parameters and delays, shared by all conditions
-//! [ B'  W ] [ c ] = [ h ]       c = (a, b): ln gains of the channels in this condition
+//! [ B^T D ] [ c ] = [ h ]       c = (a, b): ln gains of the channels in this condition
 //!
-//! 1  S, B, W, g, h <- sums of blocks
-//! 2  U <- w W + I / sd_gain^2,   w = nu / (N s^2)
-//! 3  S' <- w S - w^2 B U^-1 B',   g' <- w g - w^2 B U^-1 h
-//! 4  c(x) = w U^-1 (h - B' x)
+//! 1  S, B, D, g, h <- sums of blocks                                  (ConditionEquations::new)
+//! 2  U <- w D + I / sd_gain^2,   w = nu / (N s^2)                     (reduced)
+//! 3  S' <- w S - w^2 B U^-1 B^T,   g' <- w g - w^2 B U^-1 h
+//! 4  c(x) = w U^-1 (h - B^T x)                                        (ln_gains)
 //! ```
 //!
-//! A *block* holds the weighted products of a response's design matrix `J` and target `y` in one
-//! third of the frequencies (`pair_blocks`). Shared unknowns: the fitted parameters, the output
-//! delays, the input delays. Own unknowns: the output ln gains, then the input ln gains; `sd_gain`
-//! is their prior standard deviation. `nu` is how many independent frequencies a response counts
-//! as, `N` the number of frequencies, `s^2` the mean square misfit (step 7 in `physics`).
+//! The response of a pair at a frequency has a residual `y - J x - (a_o + b_i)`: `y` is the
+//! logarithm to match, and the row `J` has the parameters' derivatives and, for both channels'
+//! delays, `-j omega`. A *block* holds the weighted products of `v = (derivatives, -j omega, 1,
+//! y)`, summed over one third of the frequencies (`pair_blocks`).
+//!
+//! `sd_gain` is the prior standard deviation of the ln gains. `nu` is how many independent
+//! frequencies a response counts as, `N` the number of frequencies, `s^2` the mean square misfit.
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
@@ -32,16 +34,16 @@ pub(super) struct EquationScale {
     pub(super) gain_sd: f64,
 }
 
-/// A part of the data that can be left out.
+/// A part of the data that can be left out, in all conditions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Part {
+pub(super) enum DataPart {
     Output(usize),
     Input(usize),
     /// A third of the frequency grid, counted from 0.
     Third(usize),
 }
 
-impl Part {
+impl DataPart {
     /// Returns whether a block belongs to the part.
     pub(super) fn contains(self, pair: Pair, third: usize) -> bool {
         match self {
@@ -57,18 +59,20 @@ impl Part {
 pub(super) struct ConditionEquations {
     /// `S`.
     shared: DMatrix<f64>,
-    /// `B`.
+    /// `B`: rows by shared unknown, columns by channel.
     border: DMatrix<f64>,
-    /// `W`.
-    own: DMatrix<f64>,
+    /// `D`.
+    gain: DMatrix<f64>,
     /// `g`.
     shared_right: DVector<f64>,
     /// `h`.
-    own_right: DVector<f64>,
-    /// `sum q^2 |y|^2`.
-    target_square: f64,
+    gain_right: DVector<f64>,
+    /// `sum q^2 |y|^2`, with the weights `q`.
+    y_square: f64,
 }
 
+/// Counts from which the numbers of unknowns follow. Their order: in `x` the fitted parameters,
+/// output delays, input delays; in `c` the output ln gains, input ln gains.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct UnknownCounts {
     /// Count of fitted parameters.
@@ -94,17 +98,17 @@ impl ConditionEquations {
     pub(super) fn new(
         blocks: &ConditionBlocks,
         counts: UnknownCounts,
-        left_out: Option<Part>,
+        left_out: Option<DataPart>,
     ) -> Self {
         let shared = counts.shared();
-        let own = counts.channels();
+        let gains = counts.channels();
         let mut equations = Self {
             shared: DMatrix::zeros(shared, shared),
-            border: DMatrix::zeros(shared, own),
-            own: DMatrix::zeros(own, own),
+            border: DMatrix::zeros(shared, gains),
+            gain: DMatrix::zeros(gains, gains),
             shared_right: DVector::zeros(shared),
-            own_right: DVector::zeros(own),
-            target_square: 0.0,
+            gain_right: DVector::zeros(gains),
+            y_square: 0.0,
         };
         for (pair, thirds) in blocks.responses.iter() {
             for (third, block) in thirds.iter().enumerate() {
@@ -117,40 +121,39 @@ impl ConditionEquations {
         equations
     }
 
-    /// Adds a block. Its design matrix row has the parameters' derivatives, -j omega for both
-    /// channels' delays, and 1 for their gains.
+    /// Adds the block of a pair: to the unknowns of its two channels, and to the parameters.
     fn add(&mut self, block: &Block, counts: UnknownCounts, pair: Pair) {
         let channels = [pair.output, counts.outputs + pair.input];
         let mut columns: Vec<SharedColumn> = Vec::with_capacity(counts.parameters + 2);
         for parameter in 0..counts.parameters {
             columns.push(SharedColumn {
                 unknown: parameter,
-                entry: parameter,
+                v_index: parameter,
             });
         }
         for channel in channels {
             columns.push(SharedColumn {
                 unknown: counts.parameters + channel,
-                entry: block.delay(),
+                v_index: block.delay(),
             });
         }
         for row in &columns {
             for column in &columns {
                 self.shared[(row.unknown, column.unknown)] +=
-                    block.product(row.entry, column.entry);
+                    block.product(row.v_index, column.v_index);
             }
             for channel in channels {
-                self.border[(row.unknown, channel)] += block.product(row.entry, block.gain());
+                self.border[(row.unknown, channel)] += block.product(row.v_index, block.gain());
             }
-            self.shared_right[row.unknown] += block.product(row.entry, block.target());
+            self.shared_right[row.unknown] += block.product(row.v_index, block.y());
         }
         for row in channels {
             for column in channels {
-                self.own[(row, column)] += block.product(block.gain(), block.gain());
+                self.gain[(row, column)] += block.product(block.gain(), block.gain());
             }
-            self.own_right[row] += block.product(block.gain(), block.target());
+            self.gain_right[row] += block.product(block.gain(), block.y());
         }
-        self.target_square += block.product(block.target(), block.target());
+        self.y_square += block.product(block.y(), block.y());
     }
 
     /// Eliminates the condition's gains (steps 2 and 3); `None` if they are not determined.
@@ -160,24 +163,24 @@ impl ConditionEquations {
             return Some(ReducedEquations {
                 matrix: &self.shared * w,
                 right: &self.shared_right * w,
-                own: None,
+                gain_factors: None,
             });
         }
         // Step 2
-        let mut own = &self.own * w;
-        for channel in 0..own.nrows() {
-            own[(channel, channel)] += scale.gain_sd.powi(-2);
+        let mut u = &self.gain * w;
+        for channel in 0..u.nrows() {
+            u[(channel, channel)] += scale.gain_sd.powi(-2);
         }
-        let own = Cholesky::new(own)?;
-        // Step 3: w U^-1 B' and w U^-1 h.
-        let eliminated = own.solve(&(self.border.transpose() * w));
-        let eliminated_right = own.solve(&(&self.own_right * w));
+        let gain_factors = Cholesky::new(u)?;
+        // Step 3: w U^-1 B^T and w U^-1 h.
+        let eliminated = gain_factors.solve(&(self.border.transpose() * w));
+        let eliminated_right = gain_factors.solve(&(&self.gain_right * w));
         let mut matrix = (&self.shared - &self.border * &eliminated) * w;
         symmetrise(&mut matrix);
         Some(ReducedEquations {
             matrix,
             right: (&self.shared_right - &self.border * eliminated_right) * w,
-            own: Some(own),
+            gain_factors: Some(gain_factors),
         })
     }
 
@@ -188,19 +191,19 @@ impl ConditionEquations {
         scale: EquationScale,
         x: &DVector<f64>,
     ) -> DVector<f64> {
-        match &reduced.own {
-            Some(own) => own.solve(&((&self.own_right - self.border.tr_mul(x)) * scale.weight)),
-            None => DVector::zeros(self.own_right.len()),
+        match &reduced.gain_factors {
+            Some(u) => u.solve(&((&self.gain_right - self.border.tr_mul(x)) * scale.weight)),
+            None => DVector::zeros(self.gain_right.len()),
         }
     }
 
-    /// Returns `sum q^2 |y - J x|^2` for shared unknowns `x` and the ln gains `gains`.
-    pub(super) fn squared_error(&self, x: &DVector<f64>, gains: &DVector<f64>) -> f64 {
-        let linear = self.shared_right.dot(x) + self.own_right.dot(gains);
-        let quadratic = (&self.shared * x).dot(x)
-            + 2.0 * (&self.border * gains).dot(x)
-            + (&self.own * gains).dot(gains);
-        (self.target_square - 2.0 * linear + quadratic).max(0.0)
+    /// Returns the weighted sum of squared residuals for shared unknowns `x` and the ln gains `c`;
+    /// not below 0, whatever the rounding.
+    pub(super) fn squared_error(&self, x: &DVector<f64>, c: &DVector<f64>) -> f64 {
+        let linear = self.shared_right.dot(x) + self.gain_right.dot(c);
+        let quadratic =
+            (&self.shared * x).dot(x) + 2.0 * (&self.border * c).dot(x) + (&self.gain * c).dot(c);
+        (self.y_square - 2.0 * linear + quadratic).max(0.0)
     }
 
     /// Returns the fitted parameters' normal matrix with all channels known, times `w`.
@@ -214,12 +217,12 @@ impl ConditionEquations {
     }
 }
 
-/// A column in a block's design matrix.
+/// A shared unknown on which a response depends.
 struct SharedColumn {
     /// Index among the shared unknowns.
     unknown: usize,
-    /// Index of the entry in the block's `v`.
-    entry: usize,
+    /// Index of its derivative in the block's `v`.
+    v_index: usize,
 }
 
 /// A condition's scaled normal equations for the shared unknowns.
@@ -230,7 +233,7 @@ pub(super) struct ReducedEquations {
     /// `g'`.
     pub(super) right: DVector<f64>,
     /// Cholesky factors of `U`; `None` without gains.
-    own: Option<Cholesky<f64, Dyn>>,
+    gain_factors: Option<Cholesky<f64, Dyn>>,
 }
 
 /// Removes rounding errors that make a symmetric matrix slightly unsymmetric.

@@ -23,10 +23,11 @@ use super::score::Scores;
 use super::verdict::{NamingFacts, Verdict, WhyNotNamed};
 
 /// A condition's misfit, relative to the median over the conditions, above which a caution is
-/// raised.
+/// raised (M18.5).
 pub const NOTABLE_MISFIT: f64 = 1.5;
-/// Least information that a condition must have about a parameter, relative to the prior: the
-/// value's standard deviation is then three plausible ones.
+/// Least information (reciprocal variance) that a condition must have about a parameter, in units
+/// of the prior's: the value's standard deviation is then three plausible ones, as large as the
+/// range in which values are permitted.
 const LEAST_INFORMATION: f64 = 1.0 / 9.0;
 /// Share of the progress for the passes; scores and intervals follow.
 const PASSES_SHARE: f64 = 0.95;
@@ -171,13 +172,13 @@ impl PhysicsDiagnosis {
 /// Fits the parameters, and derives intervals, scores, names and the verdict.
 ///
 /// ```text
-/// steps in `physics`
-/// 1 to 8  passes                                                       fit, stored equations
-/// 11      how well the data determine each parameter                   identifiability
-/// 9       intervals                                                    none with fewer than four conditions
-/// 10      scores                                                       none with fewer than two conditions
-/// 12      verdict, from the share explained, the misfit, the spread    none without intervals or scores
-///         names, one parameter at a time (`NamingFacts`)
+/// 1  fit, with the normal equations at its solution
+/// 2  how well the data determine each parameter
+/// 3  intervals                                      none with fewer than four conditions
+/// 4  scores                                         none with fewer than two conditions
+/// 5  verdict, from the share explained, the misfit
+///    and the spread between identified models       none without intervals or scores
+/// 6  names, one parameter at a time (`NamingFacts`); each condition's misfit and values
 /// ```
 ///
 /// # Errors
@@ -189,27 +190,28 @@ pub fn diagnose(
 ) -> Result<PhysicsDiagnosis, PhysicsError> {
     let shares = Shares::new(progress);
     let portion = Portion::new(&shares, PASSES_SHARE, SCORING);
-    // Steps 1 to 8
+    // Step 1
     let SolvedFit { fit, equations } = solve(problem, executor, &portion)?;
     portion.finish()?;
-    // Step 11
+    // Step 2
     let identifiability = Identifiability::new(&equations)?;
-    // Step 9
+    // Step 3
     let intervals = Intervals::new(&equations, &identifiability.inverse, problem.options.level)?;
     shares.next(PASSES_SHARE, SCORING)?;
-    // Step 10
+    // Step 4
     let scores = Scores::new(&equations, &fit.fitted);
     shares.next(1.0, SCORING)?;
     let explained = scores.as_ref().map(Scores::explained);
     let spread = equations.spread();
-    // Step 12
+    // Step 5
     let verdict = match explained {
         Some(explained) if !intervals.half_widths.is_empty() => {
             Some(Verdict::new(explained, fit.misfit, spread))
         }
         _ => None,
     };
-    let assembly = Assembly {
+    // Step 6
+    let findings = Findings {
         problem,
         fit: &fit,
         equations: &equations,
@@ -218,8 +220,8 @@ pub fn diagnose(
         scores: scores.as_ref(),
     };
     Ok(PhysicsDiagnosis {
-        parameters: assembly.parameters(),
-        conditions: assembly.conditions(),
+        parameters: findings.parameters(),
+        conditions: findings.conditions(),
         pairs: identifiability.pairs(&fit.fitted),
         fit,
         scores,
@@ -230,8 +232,8 @@ pub fn diagnose(
 }
 
 /// Fit, intervals and scores, from which the diagnosis for parameters and conditions is put
-/// together.
-struct Assembly<'a> {
+/// together (step 6).
+struct Findings<'a> {
     problem: &'a PhysicsProblem,
     fit: &'a PhysicsFit,
     equations: &'a PassEquations,
@@ -240,16 +242,17 @@ struct Assembly<'a> {
     scores: Option<&'a Scores>,
 }
 
-impl Assembly<'_> {
+impl Findings<'_> {
+    /// Returns the diagnosis for each parameter.
     fn parameters(&self) -> Vec<ParameterDiagnosis> {
         let mut parameters = Vec::with_capacity(self.fit.z.len());
         for (parameter, &z) in self.fit.z.iter().enumerate() {
-            let place = self
+            let fitted_index = self
                 .fit
                 .fitted
                 .iter()
                 .position(|&fitted| fitted == parameter);
-            parameters.push(match place {
+            parameters.push(match fitted_index {
                 Some(index) => self.fitted_parameter(parameter, index),
                 None => ParameterDiagnosis {
                     z,
@@ -274,7 +277,7 @@ impl Assembly<'_> {
         let identifiability = self.identifiability;
         let learned = identifiability.learned[index];
         let facts = NamingFacts {
-            conditions: self.equations.counting_conditions(),
+            conditions: self.equations.count_conditions_with_data(),
             explained: self.scores.map(Scores::explained),
             z: self.fit.z[parameter],
             half_width: self.intervals.half_widths.get(index).copied(),
@@ -295,18 +298,19 @@ impl Assembly<'_> {
         }
     }
 
-    /// Returns a parameter's value from a single condition; `place` is its index among the fitted
-    /// parameters. `None` if the condition has too little information about it.
-    fn value_here(&self, condition: usize, place: usize) -> Option<ValueHere> {
+    /// Returns a parameter's value from a single condition by the formula of [`ValueHere`]; `index`
+    /// is its index among the fitted parameters. `None` if the condition has too little information
+    /// about it.
+    fn value_here(&self, condition: usize, index: usize) -> Option<ValueHere> {
         let reduced = &self.equations.reduced[condition];
-        let information = reduced.matrix[(place, place)];
+        let information = reduced.matrix[(index, index)];
         if information.is_nan() || information <= LEAST_INFORMATION {
             return None;
         }
         let x = self.shared_values();
-        let residual = reduced.right[place] - reduced.matrix.row(place).transpose().dot(&x);
+        let residual = reduced.right[index] - reduced.matrix.row(index).transpose().dot(&x);
         Some(ValueHere {
-            z: x[place] + residual / information,
+            z: x[index] + residual / information,
             sd: information.sqrt().recip(),
         })
     }
@@ -326,21 +330,22 @@ impl Assembly<'_> {
         DVector::from_vec(values)
     }
 
+    /// Returns the diagnosis for each condition.
     fn conditions(&self) -> Vec<ConditionDiagnosis> {
         let mut conditions = Vec::with_capacity(self.problem.conditions.len());
-        for (index, condition) in self.problem.conditions.iter().enumerate() {
+        for (place, condition) in self.problem.conditions.iter().enumerate() {
             let mut z_without = self.problem.initial_values();
-            let without = &self.intervals.without_condition[index];
+            let without = &self.intervals.without_condition[place];
             for (&parameter, &z) in self.fit.fitted.iter().zip(without) {
                 z_without[parameter] = z;
             }
             let mut z_here = vec![None; z_without.len()];
-            for (place, &parameter) in self.fit.fitted.iter().enumerate() {
-                z_here[parameter] = self.value_here(index, place);
+            for (index, &parameter) in self.fit.fitted.iter().enumerate() {
+                z_here[parameter] = self.value_here(place, index);
             }
             conditions.push(ConditionDiagnosis {
                 id: condition.id,
-                misfit: self.equations.blocks[index].sums().misfit(),
+                misfit: self.equations.blocks[place].sums().misfit(),
                 z_without,
                 z_here,
             });

@@ -7,16 +7,17 @@
 //! X = (j omega I - A)^-1 B,   Y = C (j omega I - A)^-1
 //! ```
 //!
-//! A *run* is a model linearised with parameter k moved, its *base* the same model with the
-//! parameter nominal. `z_k` is the parameter's change divided by its plausible standard deviation;
-//! `L_k` and `Q_k` are the linear and the quadratic change of A in `z_k`, found from the runs
-//! (`increments`), likewise of B, C and D.
+//! At `z = 0` these are the *representative*, the model that stands for the condition's physics
+//! models. A *run* is a model linearised with parameter k moved, its *base* the model at the same
+//! trim with the parameter nominal. `z_k` is the parameter's change divided by its plausible
+//! standard deviation; `L_k` and `Q_k` are the linear and the quadratic change of A in `z_k`, found
+//! from runs and base (`increments`), likewise of B, C and D. Channel delays multiply H and its
+//! derivatives.
 //!
 //! In discrete time, `j omega` is `e^(j omega T)`; 1 is subtracted from it and I from A, which
-//! leaves `j omega I - A` unchanged. Channel delays multiply H and its derivatives. A
-//! representative with other states than the runs' base has no increments for its matrices; its
-//! responses then change like the base's, `H = H_rep + sum_k (z_k L_k + z_k^2 Q_k)`, with `L_k` and
-//! `Q_k` from the responses.
+//! leaves `j omega I - A` unchanged. A representative with other states than the base has no
+//! increments for its matrices; its responses then change like the base's, `H = H_rep + sum_k (z_k
+//! L_k + z_k^2 Q_k)`, with `L_k` and `Q_k` from the responses.
 
 use nalgebra::{Complex, DMatrix};
 
@@ -55,8 +56,8 @@ enum FamilyKind {
 /// Family given by matrices, in balanced coordinates.
 #[derive(Clone, Debug)]
 struct MatrixFamily {
-    /// The representative; in discrete time with `A - I` instead of A.
-    base: Matrices,
+    /// In discrete time with `A - I` instead of A.
+    representative: Matrices,
     increments: Vec<ParameterIncrement>,
     sample_time_s: Option<f64>,
     /// Delay in each response \[s\], `[output m + input]`.
@@ -66,7 +67,8 @@ struct MatrixFamily {
 /// Family given by responses on a fixed grid; each list as in [`FamilyResponse`].
 #[derive(Clone, Debug)]
 struct ResponseFamily {
-    base: Vec<Complex<f64>>,
+    /// `H_rep`.
+    representative: Vec<Complex<f64>>,
     /// `L_k`.
     linear: Vec<Vec<Complex<f64>>>,
     /// `Q_k`; zero for a single run.
@@ -81,13 +83,13 @@ impl ModelFamily {
         if !increments.has_states_of(representative) {
             return None;
         }
-        let mut base = Matrices::from_model(model);
+        let mut matrices = Matrices::from_model(model);
         let sample_time_s = model.timing().sample_time_s;
         if sample_time_s.is_some() {
-            base.a -= DMatrix::identity(model.order(), model.order());
+            matrices.a -= DMatrix::identity(model.order(), model.order());
         }
         // Only the scales are needed: `balanced` applies them to all matrices.
-        let scales = balance_square(&mut base.a.clone());
+        let scales = balance_square(&mut matrices.a.clone());
         let mut delays_s = Vec::with_capacity(model.outputs() * model.inputs());
         for output in 0..model.outputs() {
             for input in 0..model.inputs() {
@@ -96,7 +98,7 @@ impl ModelFamily {
         }
         Some(Self {
             kind: FamilyKind::Matrices(Box::new(MatrixFamily {
-                base: base.balanced(&scales),
+                representative: matrices.balanced(&scales),
                 increments: increments
                     .parameters
                     .iter()
@@ -125,7 +127,7 @@ impl ModelFamily {
         for steps in runs {
             let first = steps.first()?;
             for step in steps {
-                if !step.fits() || (step.run.outputs(), step.run.inputs()) != shape {
+                if !step.is_valid() || (step.run.outputs(), step.run.inputs()) != shape {
                     return None;
                 }
             }
@@ -146,7 +148,7 @@ impl ModelFamily {
         }
         Some(Self {
             kind: FamilyKind::Responses(ResponseFamily {
-                base: values(&representative.dynamics, omega),
+                representative: response_values(&representative.dynamics, omega),
                 linear,
                 quadratic,
             }),
@@ -179,7 +181,7 @@ impl ModelFamily {
         match &self.kind {
             FamilyKind::Matrices(_) => None,
             FamilyKind::Responses(family) => {
-                Some(family.base.len() / (self.outputs * self.inputs).max(1))
+                Some(family.representative.len() / (self.outputs * self.inputs).max(1))
             }
         }
     }
@@ -196,7 +198,7 @@ impl ModelFamily {
 
 impl MatrixFamily {
     fn evaluate(&self, z: &[f64], omega: &[f64]) -> FamilyResponse {
-        let mut system = self.base.clone();
+        let mut system = self.representative.clone();
         for (increment, &z) in self.increments.iter().zip(z) {
             increment.add_to(&mut system, z);
         }
@@ -205,12 +207,12 @@ impl MatrixFamily {
             .map(|&omega| evaluation_point(omega, self.sample_time_s))
             .collect();
         let products = ResolventProducts::new(&system, &s);
-        let mut response = ordered(&products.response, self.delays_s.len(), omega.len());
+        let mut response = by_response(&products.response, self.delays_s.len(), omega.len());
         self.delay(&mut response, omega);
         let mut derivatives = Vec::with_capacity(self.increments.len());
         for (increment, &z) in self.increments.iter().zip(z) {
-            let derivative = derivative(&increment.derivative(z), &products, omega.len());
-            let mut derivative = ordered(&derivative, self.delays_s.len(), omega.len());
+            let by_point = response_derivative(&increment.derivative(z), &products, omega.len());
+            let mut derivative = by_response(&by_point, self.delays_s.len(), omega.len());
             self.delay(&mut derivative, omega);
             derivatives.push(derivative);
         }
@@ -235,34 +237,40 @@ impl MatrixFamily {
     }
 }
 
-/// Computes `Y A' X + Y B' + C' X + D'` for a change in the matrices, point by point: `[(point p +
-/// output) m + input]`.
-fn derivative(change: &Matrices, products: &ResolventProducts, points: usize) -> Vec<Complex<f64>> {
+/// Computes `Y (A' X + B') + (C' X + D')` for a change in the matrices, point by point, ordered as
+/// [`ResolventProducts::response`]. The real and imaginary parts of `X` and `Y` are separate
+/// columns and rows, so that all products are real: `Y (A' X + B')` has four of them, of which two
+/// make the real and two the imaginary part.
+fn response_derivative(
+    change: &Matrices,
+    products: &ResolventProducts,
+    points: usize,
+) -> Vec<Complex<f64>> {
     let inputs = change.b.ncols();
     let outputs = change.c.nrows();
     // A' X + B', n x 2 m N; B' is real.
-    let mut driven = &change.a * &products.input_states;
+    let mut state_change = &change.a * &products.input_states;
     for point in 0..points {
-        let mut real_columns = driven.columns_mut(2 * inputs * point, inputs);
+        let mut real_columns = state_change.columns_mut(2 * inputs * point, inputs);
         real_columns += &change.b;
     }
-    // C' X, p x 2 m N.
-    let measured = &change.c * &products.input_states;
+    // C' X, p x 2 m N; D' is added below.
+    let output_change = &change.c * &products.input_states;
     let mut values = Vec::with_capacity(points * outputs * inputs);
     for point in 0..points {
-        let left = products
+        let y = products
             .output_states
             .rows(2 * outputs * point, 2 * outputs);
         // Real and imaginary parts of Y, times those of A' X + B': 2 p x 2 m.
-        let product = left * driven.columns(2 * inputs * point, 2 * inputs);
+        let product = y * state_change.columns(2 * inputs * point, 2 * inputs);
         for output in 0..outputs {
             for input in 0..inputs {
                 let column = 2 * inputs * point + input;
                 let re = product[(output, input)] - product[(outputs + output, inputs + input)];
                 let im = product[(output, inputs + input)] + product[(outputs + output, input)];
                 values.push(Complex::new(
-                    re + measured[(output, column)] + change.d[(output, input)],
-                    im + measured[(output, column + inputs)],
+                    re + output_change[(output, column)] + change.d[(output, input)],
+                    im + output_change[(output, column + inputs)],
                 ));
             }
         }
@@ -271,19 +279,19 @@ fn derivative(change: &Matrices, products: &ResolventProducts, points: usize) ->
 }
 
 /// Reorders values from point by point to response by response.
-fn ordered(values: &[Complex<f64>], responses: usize, points: usize) -> Vec<Complex<f64>> {
-    let mut ordered = Vec::with_capacity(values.len());
+fn by_response(by_point: &[Complex<f64>], responses: usize, points: usize) -> Vec<Complex<f64>> {
+    let mut values = Vec::with_capacity(by_point.len());
     for response in 0..responses {
         for point in 0..points {
-            ordered.push(values[point * responses + response]);
+            values.push(by_point[point * responses + response]);
         }
     }
-    ordered
+    values
 }
 
 impl ResponseFamily {
     fn evaluate(&self, z: &[f64]) -> FamilyResponse {
-        let mut response = self.base.clone();
+        let mut response = self.representative.clone();
         let mut derivatives = Vec::with_capacity(z.len());
         for ((linear, quadratic), &z) in self.linear.iter().zip(&self.quadratic).zip(z) {
             let mut derivative = linear.clone();
@@ -311,11 +319,11 @@ fn response_slope(step: &RunStep<'_>, omega: &[f64]) -> Vec<Complex<f64>> {
 }
 
 fn state_space_values(model: &StateSpace, omega: &[f64]) -> Vec<Complex<f64>> {
-    values(&Dynamics::StateSpace(model.clone()), omega)
+    response_values(&Dynamics::StateSpace(model.clone()), omega)
 }
 
 /// Returns a model's responses, ordered as in [`FamilyResponse`].
-fn values(dynamics: &Dynamics, omega: &[f64]) -> Vec<Complex<f64>> {
+fn response_values(dynamics: &Dynamics, omega: &[f64]) -> Vec<Complex<f64>> {
     let response = PreparedModel::new(dynamics).at(omega);
     response
         .curves()

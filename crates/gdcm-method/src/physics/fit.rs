@@ -1,10 +1,11 @@
-//! Fits the parameters to all conditions at once (steps 2 to 8 in `physics`, M18.2), by a sequence
-//! of *passes*: each linearises the logarithms of the responses at the present *point*, the values
-//! of all unknowns, and solves the normal equations.
+//! Fits the parameters to all conditions at once (M18.2), by a sequence of *passes*: each
+//! linearises the logarithms of the responses at the present *point*, the values of all unknowns,
+//! and solves the normal equations.
 //!
 //! The unknowns are the parameter values `z`, in plausible standard deviations, the channel delays
 //! `tau`, and each condition's channel ln gains `a`, `b`. `R` is the identified response, `H^` the
-//! physics response at the point, `q` a weight, `s` the misfit.
+//! physics response at the point with the channels' gains and delays, `q` a response's weight, and
+//! `s` the misfit, `s^2 = sum q^2 |ln(R / H^)|^2 / (2 sum q^2)`.
 
 use gdcm_model::executor::{Executor, each};
 use gdcm_model::progress::{Progress, Shares};
@@ -15,12 +16,14 @@ use super::problem::{PhysicsError, PhysicsProblem};
 use super::weighted_condition::{PassPoint, WeightedCondition};
 use crate::correction::Channels;
 
-/// Greatest change in a parameter value per pass, in plausible standard deviations.
+/// Greatest change in a parameter value per pass, in plausible standard deviations: a pass's
+/// linearisation is not trusted further.
 const GREATEST_STEP: f64 = 1.0;
 /// The passes end when no parameter value changes by more than this, in plausible standard
 /// deviations.
 const SETTLED: f64 = 1e-3;
-/// Minimum number of passes, unless [`PhysicsProblem::options`] permits fewer.
+/// Minimum number of passes, unless [`PhysicsProblem::options`] permits fewer: the weights of the
+/// first two still belong to points on the way to the solution.
 const FEWEST_PASSES: usize = 3;
 /// Step name in progress reports.
 const FITTING: &str = "physics parameters";
@@ -64,8 +67,8 @@ pub(super) struct SolvedFit {
 
 /// Fits the parameters (M18.2).
 ///
-/// The result is the same in any order of execution. `progress` is notified after every condition in
-/// every pass.
+/// The result is the same in any order of execution. `progress` is notified after every condition
+/// in every pass.
 ///
 /// # Errors
 /// [`PhysicsError`] if a table, a value or a setting in `problem` is invalid, no response has a
@@ -81,10 +84,11 @@ pub fn fit_parameters(
 /// Fits the parameters, and keeps the normal equations at the solution.
 ///
 /// ```text
-/// 1  point <- parameters at zero or at the values set by hand; no delays, no ln gains       step 2 in `physics`
-/// 2  normal equations at the point, and their solution                                     steps 3 to 7
-/// 3  point <- towards the solution, as far as no z moves by more than 1                     step 7
-/// 4  repeat from 2: at least three passes, until no z moves by more than 1e-3 or the passes are used up       step 8
+/// 1  point <- parameters at zero or at the values set by hand; no delays, no ln gains
+/// 2  normal equations at the point, and their solution
+/// 3  point <- towards the solution, as far as no z moves by more than 1
+/// 4  repeat from 2: at least three passes, until no z moves by more than 1e-3, or the passes are
+///    used up
 /// 5  normal equations at the last point
 /// ```
 pub(super) fn solve(
@@ -140,23 +144,23 @@ impl FitPoint {
     /// shortens the whole step if a parameter would move by more than one plausible standard
     /// deviation. Returns the parameter that moves most, or `None` if all move by 1e-3 or less.
     fn step_to(&mut self, solution: &FitPoint) -> Option<usize> {
-        let mut largest = 0.0;
-        let mut moving = None;
-        for (parameter, (z, other)) in self.z.iter().zip(&solution.z).enumerate() {
-            let step = (other - z).abs();
-            if step > largest {
-                largest = step;
-                moving = Some(parameter);
+        let mut largest_step = 0.0;
+        let mut most_moved = None;
+        for (parameter, (z, solution_z)) in self.z.iter().zip(&solution.z).enumerate() {
+            let step = (solution_z - z).abs();
+            if step > largest_step {
+                largest_step = step;
+                most_moved = Some(parameter);
             }
         }
-        let share = if largest > GREATEST_STEP {
-            GREATEST_STEP / largest
+        let share = if largest_step > GREATEST_STEP {
+            GREATEST_STEP / largest_step
         } else {
             1.0
         };
         self.move_towards(solution, share);
-        if largest * share > SETTLED {
-            moving
+        if largest_step * share > SETTLED {
+            most_moved
         } else {
             None
         }
@@ -171,7 +175,7 @@ struct Fitting<'a> {
     executor: &'a dyn Executor,
     shares: Shares<'a>,
     /// Progress share for one condition in one pass.
-    share: f64,
+    progress_share: f64,
 }
 
 impl<'a> Fitting<'a> {
@@ -180,6 +184,7 @@ impl<'a> Fitting<'a> {
         executor: &'a dyn Executor,
         progress: &'a dyn Progress,
     ) -> Self {
+        // Every pass, and step 5, evaluate each condition once.
         let evaluations = (problem.options.passes.max(1) + 1) * problem.conditions.len().max(1);
         Self {
             conditions: problem
@@ -191,7 +196,7 @@ impl<'a> Fitting<'a> {
             problem,
             executor,
             shares: Shares::new(progress),
-            share: 1.0 / evaluations as f64,
+            progress_share: 1.0 / evaluations as f64,
         }
     }
 
@@ -204,7 +209,7 @@ impl<'a> Fitting<'a> {
                 fitted: &self.fitted,
                 channels: point.channels(index),
             });
-            self.shares.advance(self.share, FITTING)?;
+            self.shares.advance(self.progress_share, FITTING)?;
             Ok::<_, PhysicsError>(blocks)
         });
         let blocks = blocks.into_iter().collect::<Result<Vec<_>, _>>()?;

@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! learned about k          1 - (P^-1)_kk,     P = F + I
-//! channels can take of k   1 - F_kk / F°_kk,  F° the same with the channels known
+//! channels can take of k   1 - F_kk / F°_kk,  F° as F, but with the channels known
 //! correlation of k and l   (P^-1)_kl / sqrt((P^-1)_kk (P^-1)_ll)
 //! ```
 //!
@@ -16,13 +16,16 @@ use nalgebra::{Cholesky, DMatrix};
 use super::pass_equations::{PassEquations, singular};
 use super::problem::PhysicsError;
 
-/// Correlation magnitude above which two parameters cannot be told apart.
+/// Correlation magnitude above which two parameters cannot be told apart: each then explains more
+/// than 64 % of the other's variance, the square of this value.
 pub const INSEPARABLE: f64 = 0.8;
 /// Share of a parameter's effect that channels can take over, above which its value rests on the
-/// delay prior.
+/// delay prior: less than a twentieth of the information about it remains. The bandwidth of all
+/// actuators is such a parameter (M18.4).
 pub const ACTS_LIKE_CHANNELS: f64 = 0.95;
 /// Limit on the least singular value of `F`; below it, the data say less about the parameter
-/// combination that belongs to this value than the prior, and the combination is reported.
+/// combination that belongs to this value than the prior, whose information is `I`, and the
+/// combination is reported.
 const WEAK_DIRECTION: f64 = 1.0;
 
 /// Two parameters and their correlation in `P^-1`.
@@ -72,21 +75,23 @@ impl Identifiability {
             .system
             .parameter_information()
             .ok_or(singular(equations.counts))?;
-        let posterior = &information + DMatrix::identity(size, size);
-        let inverse = Cholesky::new(posterior)
+        let posterior_information = &information + DMatrix::identity(size, size);
+        let inverse = Cholesky::new(posterior_information)
             .ok_or(singular(equations.counts))?
             .inverse();
-        let mut known_channels = DMatrix::zeros(size, size);
+        // `F°`.
+        let mut with_known_channels = DMatrix::zeros(size, size);
         for condition in &equations.conditions {
-            known_channels += condition.parameter_information(equations.counts, equations.scale);
+            with_known_channels +=
+                condition.parameter_information(equations.counts, equations.scale);
         }
         let mut learned = Vec::with_capacity(size);
         let mut channels_can_take = Vec::with_capacity(size);
         for k in 0..size {
             learned.push(1.0 - inverse[(k, k)]);
-            let known = known_channels[(k, k)];
-            channels_can_take.push(if known > 0.0 {
-                Some(1.0 - information[(k, k)] / known)
+            let with_known = with_known_channels[(k, k)];
+            channels_can_take.push(if with_known > 0.0 {
+                Some(1.0 - information[(k, k)] / with_known)
             } else {
                 None
             });
@@ -147,7 +152,8 @@ impl Identifiability {
     }
 }
 
-/// Singular values of a symmetric matrix, and the direction that belongs to the least one.
+/// Singular values of a symmetric matrix without negative eigenvalues, which are these eigenvalues,
+/// and the direction that belongs to the least.
 struct Directions {
     singular_values: Vec<f64>,
     weak: Option<WeakDirection>,

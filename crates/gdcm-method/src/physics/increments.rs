@@ -20,7 +20,8 @@ use gdcm_model::dataset::{Model, StateSpace};
 use super::matrices::Matrices;
 
 /// Ratio between the quadratic and the linear change in A, at the value found, above which a
-/// caution reports a nonlinear effect (M18.7).
+/// caution reports a nonlinear effect (M18.7): the quadratic part is then more than half the linear
+/// part, and extrapolation beyond the runs is doubtful.
 pub const NOTABLE_CURVATURE: f64 = 0.5;
 
 /// A run with one parameter moved by `z` plausible standard deviations.
@@ -36,7 +37,7 @@ pub struct RunStep<'a> {
 
 impl RunStep<'_> {
     /// Returns whether the step is finite and not zero, and the run has its base's shape.
-    pub(super) fn fits(&self) -> bool {
+    pub(super) fn is_valid(&self) -> bool {
         self.z.is_finite() && self.z != 0.0 && model_shape(self.run) == model_shape(self.base)
     }
 }
@@ -61,7 +62,7 @@ impl ParameterIncrement {
     /// in shape from its base.
     pub(super) fn from_runs(runs: &[RunStep<'_>]) -> Option<Self> {
         let first = runs.first()?;
-        if !runs.iter().all(RunStep::fits) {
+        if !runs.iter().all(RunStep::is_valid) {
             return None;
         }
         let mut linear = Matrices::slope(first.run, first.base, first.z);

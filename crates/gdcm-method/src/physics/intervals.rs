@@ -2,29 +2,34 @@
 //! and thirds of the band (step 9 in `physics`, M18.3).
 //!
 //! ```text
-//! V_kind = (n - 1) / n sum_i (z_(-i) - mean)^2   for each kind with n > 1 members
+//! V_kind = (n - 1) / n sum_i (z_(-i) - mean)^2
 //! V = V_condition + V_output + V_input + V_band + diag(P^-1 P^-1),   P = F + I
 //! half-width = t(n_c - 1) sqrt(V)
 //! ```
 //!
-//! `z` is a parameter's value in plausible standard deviations. `z_(-i)` solves the stored normal
-//! equations without member i, with `s^2` unchanged; `t` is Student's quantile, `n_c` the number of
-//! conditions with data. `F` is the parameters' normal matrix after eliminating all channels. The
-//! last term accounts for the prior: a parameter that the data do not determine gets a wide
-//! interval, not a narrow one around zero.
+//! `z` is a parameter's value in plausible standard deviations. The *kinds* are condition, output,
+//! input and band; the *members* i of a kind are its n conditions, outputs, inputs or thirds of the
+//! band, and a kind with a single member is left out. `z_(-i)` solves the stored normal equations
+//! without member i, with the misfit `s^2` unchanged; `t` is Student's quantile, `n_c` the number
+//! of conditions with data. `F` is the parameters' normal matrix after eliminating all channels.
+//!
+//! Conditions alone do not suffice: an error of model form is the same in all of them. The last
+//! term accounts for the prior: a parameter that the data do not determine gets a wide interval,
+//! not a narrow one around zero.
 //!
 //! B. Efron, "The Jackknife, the Bootstrap and Other Resampling Plans", SIAM 1982, chapter 3.
 
 use nalgebra::{DMatrix, DVector};
 
-use super::condition_equations::Part;
+use super::condition_equations::DataPart;
 use super::pair_blocks::THIRDS;
 use super::pass_equations::{PassEquations, singular};
 use super::problem::PhysicsError;
 use super::shared_system::SharedSystem;
 use crate::uncertainty::student_quantile;
 
-/// Minimum number of conditions for intervals and named parameters.
+/// Minimum number of conditions for intervals and named parameters. Four leave three degrees of
+/// freedom; with fewer, Student's quantile grows fast: at 90 % from 2.4 to 2.9 and 6.3.
 pub const LEAST_CONDITIONS: usize = 4;
 
 /// A value's variance, by source, in squared plausible standard deviations. `None` for a source
@@ -74,27 +79,27 @@ impl Intervals {
         for reduced in &equations.reduced {
             by_condition.push(solve(equations, Some(equations.system.without(reduced)))?);
         }
-        let mut counting = Vec::new();
+        let mut by_condition_with_data = Vec::new();
         for (x, blocks) in by_condition.iter().zip(&equations.blocks) {
             if blocks.sums().weight > 0.0 {
-                counting.push(x.clone());
+                by_condition_with_data.push(x.clone());
             }
         }
-        let by_output = solve_without(equations, equations.counts.outputs, Part::Output)?;
-        let by_input = solve_without(equations, equations.counts.inputs, Part::Input)?;
-        let by_third = solve_without(equations, THIRDS, Part::Third)?;
-        let pull = inverse * inverse;
+        let by_output = solve_without(equations, equations.counts.outputs, DataPart::Output)?;
+        let by_input = solve_without(equations, equations.counts.inputs, DataPart::Input)?;
+        let by_third = solve_without(equations, THIRDS, DataPart::Third)?;
+        let prior_variance = inverse * inverse;
         let mut variances = Vec::with_capacity(equations.counts.parameters);
         for parameter in 0..equations.counts.parameters {
             variances.push(ValueVariance {
-                condition: jackknife(&counting, parameter),
+                condition: jackknife(&by_condition_with_data, parameter),
                 output: jackknife(&by_output, parameter),
                 input: jackknife(&by_input, parameter),
                 band: jackknife(&by_third, parameter),
-                prior: pull[(parameter, parameter)],
+                prior: prior_variance[(parameter, parameter)],
             });
         }
-        let conditions = equations.counting_conditions();
+        let conditions = equations.count_conditions_with_data();
         let mut half_widths = Vec::new();
         if conditions >= LEAST_CONDITIONS {
             let quantile = student_quantile(level, conditions as f64 - 1.0);
@@ -119,7 +124,7 @@ impl Intervals {
 fn solve_without(
     equations: &PassEquations,
     count: usize,
-    part: impl Fn(usize) -> Part,
+    part: impl Fn(usize) -> DataPart,
 ) -> Result<Vec<DVector<f64>>, PhysicsError> {
     let mut solutions = Vec::with_capacity(count);
     for index in 0..count {
@@ -130,6 +135,7 @@ fn solve_without(
     Ok(solutions)
 }
 
+/// Solves a system; an error if it is missing, or has no solution.
 fn solve(
     equations: &PassEquations,
     system: Option<SharedSystem>,

@@ -1,5 +1,5 @@
-//! The parameters that a dataset's runs move, with the changes that the engineer considers plausible
-//! (M18.1).
+//! The parameters that a dataset's runs move, with the changes that the engineer considers
+//! plausible (M18.1).
 
 use gdcm_model::dataset::physics_parameter::ParameterChange;
 use gdcm_model::dataset::{Dataset, PhysicsParameter};

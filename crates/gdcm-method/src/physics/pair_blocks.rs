@@ -10,7 +10,7 @@
 //!
 //! with the present pass's values in `y`. `R` is the identified response, `H` the physics response,
 //! `H^` the same with channel gains and delays, `q` the weight of the response at a frequency. With
-//! `v = (d_1, ..., d_K, -j omega, 1, y)`, a block is `sum q^2 Re(conj(v) v')` over a third's
+//! `v = (d_1, ..., d_K, -j omega, 1, y)`, a block is `sum q^2 Re(conj(v) v^T)` over a third's
 //! frequencies: all later sums, with or without a condition, output, input or third, are sums of
 //! blocks.
 
@@ -18,7 +18,7 @@ use nalgebra::Complex;
 
 use gdcm_model::dataset::PairTable;
 
-/// Parts of the frequency grid that are left out one by one.
+/// Number of parts of the frequency grid that are left out one by one for the intervals.
 pub(super) const THIRDS: usize = 3;
 
 /// Products for one response in one third of the grid.
@@ -26,7 +26,7 @@ pub(super) const THIRDS: usize = 3;
 pub(super) struct Block {
     /// K, the count of fitted parameters.
     parameters: usize,
-    /// `sum q^2 Re(conj(v) v')`, (K + 3) x (K + 3), row by row.
+    /// `sum q^2 Re(conj(v) v^T)`, (K + 3) x (K + 3), row by row.
     products: Vec<f64>,
     /// `sum q^2 |ln(R / H^)|^2`.
     pub(super) squared_error: f64,
@@ -61,19 +61,19 @@ impl Block {
     }
 
     /// Returns the index of `y` in `v`.
-    pub(super) fn target(&self) -> usize {
+    pub(super) fn y(&self) -> usize {
         self.parameters + 2
     }
 
     /// Adds a frequency with the weight `q^2`; `error` is `ln(R / H^)`.
     pub(super) fn add(&mut self, v: &[Complex<f64>], squared_weight: f64, error: Complex<f64>) {
         let size = self.parameters + 3;
-        for (row, left) in v.iter().enumerate() {
-            let re = left.re * squared_weight;
-            let im = left.im * squared_weight;
+        for (row, row_entry) in v.iter().enumerate() {
+            let re = row_entry.re * squared_weight;
+            let im = row_entry.im * squared_weight;
             let products = &mut self.products[row * size..][..size];
-            for (product, right) in products.iter_mut().zip(v) {
-                *product += re * right.re + im * right.im;
+            for (product, column_entry) in products.iter_mut().zip(v) {
+                *product += re * column_entry.re + im * column_entry.im;
             }
         }
         self.squared_error += squared_weight * error.norm_sqr();

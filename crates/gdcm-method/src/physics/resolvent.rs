@@ -1,5 +1,5 @@
-//! A model's resolvent `(s I - A)^-1` at many points `s`, applied to B from the left and to C from
-//! the right (step 3 in `physics`).
+//! A model's resolvent `(s I - A)^-1` at many points `s`, multiplied by B and by C, and the
+//! response `H = C (s I - A)^-1 B + D`.
 //!
 //! ```text
 //! 1  A = Q F Q',  F upper Hessenberg,  B~ = Q' B,  C~ = C Q           once for all points
@@ -8,8 +8,11 @@
 //! 4  X = Q X~,  Y = Y~ Q'                                              all points at once
 //! ```
 //!
-//! `Q` is orthogonal, `U` upper triangular, `E` the product of the row operations in step 2. X and
-//! Y are needed for the response's derivatives (`family`).
+//! `X = (s I - A)^-1 B` and `Y = C (s I - A)^-1` are needed for the response's derivatives
+//! (`family`); n, m and p count states, inputs and outputs, N the points. `Q` is orthogonal, `U`
+//! upper triangular, and `E` the product of the row operations. Below its diagonal, an upper
+//! Hessenberg matrix has only one entry in each column that is not zero, so that step 2 needs about
+//! n^2 operations for a point, not n^3.
 //!
 //! Golub & Van Loan, "Matrix Computations", 4th ed. 2013, 4.3.4 and 7.4.
 
@@ -47,8 +50,8 @@ impl ResolventProducts {
             // Steps 2 and 3.
             point.solve(&reduced, s);
             point.add_response(&reduced, &system.d, &mut response);
-            store(&mut input_states, index, m, &point.inputs);
-            store(&mut output_states, index, p, &point.outputs);
+            store(&mut input_states, index, m, &point.input_states);
+            store(&mut output_states, index, p, &point.output_states);
         }
         // Step 4.
         if let Some(q) = &reduced.q {
@@ -113,17 +116,18 @@ struct PointSolution {
     output_count: usize,
     /// `U`, row by row.
     upper: Vec<Complex<f64>>,
-    /// For each eliminated row, whether it was exchanged with the next, and the factor by which it
-    /// was subtracted from the next.
-    steps: Vec<EliminationStep>,
+    /// `E`, row operation by row operation.
+    eliminations: Vec<Elimination>,
     /// `X~`, n x m, row by row.
-    inputs: Vec<Complex<f64>>,
+    input_states: Vec<Complex<f64>>,
     /// `Y~` transposed, n x p, row by row.
-    outputs: Vec<Complex<f64>>,
+    output_states: Vec<Complex<f64>>,
 }
 
+/// Elimination of a column's entry below the diagonal: the row on the diagonal is exchanged with
+/// the next, if that has the larger entry, and then subtracted `factor` times from the next.
 #[derive(Clone, Copy)]
-struct EliminationStep {
+struct Elimination {
     is_exchanged: bool,
     factor: Complex<f64>,
 }
@@ -136,20 +140,20 @@ impl PointSolution {
             input_count,
             output_count,
             upper: vec![zero; order * order],
-            steps: Vec::with_capacity(order),
-            inputs: vec![zero; order * input_count],
-            outputs: vec![zero; order * output_count],
+            eliminations: Vec::with_capacity(order),
+            input_states: vec![zero; order * input_count],
+            output_states: vec![zero; order * output_count],
         }
     }
 
     /// Computes `X~` and `Y~` at the point `s` (steps 2 and 3).
     fn solve(&mut self, system: &ReducedSystem, s: Complex<f64>) {
         self.eliminate(system, s);
-        self.solve_inputs(system);
-        self.solve_outputs(system);
+        self.solve_input_states(system);
+        self.solve_output_states(system);
     }
 
-    /// Reduces `s I - F` to `U`.
+    /// Reduces `s I - F` to `U` (step 2).
     fn eliminate(&mut self, system: &ReducedSystem, s: Complex<f64>) {
         let n = self.order;
         for row in 0..n {
@@ -158,7 +162,7 @@ impl PointSolution {
             }
             self.upper[row * n + row] += s;
         }
-        self.steps.clear();
+        self.eliminations.clear();
         for k in 0..n.saturating_sub(1) {
             let (above, below) = self.upper.split_at_mut((k + 1) * n);
             let pivot_row = &mut above[k * n + k..];
@@ -173,33 +177,33 @@ impl PointSolution {
                 next_row[0] / pivot_row[0]
             };
             subtract(next_row, pivot_row, factor);
-            self.steps.push(EliminationStep {
+            self.eliminations.push(Elimination {
                 is_exchanged,
                 factor,
             });
         }
     }
 
-    /// Computes `X~ = U^-1 E B~`.
-    fn solve_inputs(&mut self, system: &ReducedSystem) {
+    /// Computes `X~ = U^-1 E B~`: first `E B~`, then back substitution (step 3).
+    fn solve_input_states(&mut self, system: &ReducedSystem) {
         let n = self.order;
         let m = self.input_count;
         for row in 0..n {
             for column in 0..m {
-                self.inputs[row * m + column] = Complex::from(system.b[(row, column)]);
+                self.input_states[row * m + column] = Complex::from(system.b[(row, column)]);
             }
         }
-        for (k, step) in self.steps.iter().enumerate() {
-            let (above, below) = self.inputs.split_at_mut((k + 1) * m);
+        for (k, elimination) in self.eliminations.iter().enumerate() {
+            let (above, below) = self.input_states.split_at_mut((k + 1) * m);
             let row = &mut above[k * m..];
             let next = &mut below[..m];
-            if step.is_exchanged {
+            if elimination.is_exchanged {
                 row.swap_with_slice(next);
             }
-            subtract(next, row, step.factor);
+            subtract(next, row, elimination.factor);
         }
         for k in (0..n).rev() {
-            let (above, below) = self.inputs.split_at_mut((k + 1) * m);
+            let (above, below) = self.input_states.split_at_mut((k + 1) * m);
             let row = &mut above[k * m..];
             for (later, values) in below.chunks_exact(m).enumerate() {
                 subtract(row, values, self.upper[k * n + k + 1 + later]);
@@ -208,29 +212,30 @@ impl PointSolution {
         }
     }
 
-    /// Computes `Y~ = C~ U^-1 E`, transposed.
-    fn solve_outputs(&mut self, system: &ReducedSystem) {
+    /// Computes `Y~ = C~ U^-1 E`, transposed: first `U^-T C~^T` by forward substitution, then
+    /// `E^T`, its row operations in reverse order (step 3).
+    fn solve_output_states(&mut self, system: &ReducedSystem) {
         let n = self.order;
         let p = self.output_count;
         for row in 0..n {
             for column in 0..p {
-                self.outputs[row * p + column] = Complex::from(system.c[(column, row)]);
+                self.output_states[row * p + column] = Complex::from(system.c[(column, row)]);
             }
         }
         for k in 0..n {
-            let (above, below) = self.outputs.split_at_mut((k + 1) * p);
+            let (above, below) = self.output_states.split_at_mut((k + 1) * p);
             let row = &mut above[k * p..];
             divide(row, self.upper[k * n + k]);
             for (later, values) in below.chunks_exact_mut(p).enumerate() {
                 subtract(values, row, self.upper[k * n + k + 1 + later]);
             }
         }
-        for (k, step) in self.steps.iter().enumerate().rev() {
-            let (above, below) = self.outputs.split_at_mut((k + 1) * p);
+        for (k, elimination) in self.eliminations.iter().enumerate().rev() {
+            let (above, below) = self.output_states.split_at_mut((k + 1) * p);
             let row = &mut above[k * p..];
             let next = &mut below[..p];
-            subtract(row, next, step.factor);
-            if step.is_exchanged {
+            subtract(row, next, elimination.factor);
+            if elimination.is_exchanged {
                 row.swap_with_slice(next);
             }
         }
@@ -248,7 +253,7 @@ impl PointSolution {
                 let mut value = Complex::from(feed_through[(output, input)]);
                 for state in 0..self.order {
                     let factor = system.c[(output, state)];
-                    value += self.inputs[state * self.input_count + input] * factor;
+                    value += self.input_states[state * self.input_count + input] * factor;
                 }
                 response.push(value);
             }

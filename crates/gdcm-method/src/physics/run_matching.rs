@@ -22,7 +22,8 @@ use super::increments::{ConditionIncrements, IncrementError, RunStep, model_shap
 use super::offered_parameter::OfferedParameter;
 use super::run_refusal::{RefusedRun, RunRefusal};
 
-/// Maximum number of runs for a parameter in a condition.
+/// Maximum number of runs for a parameter in a condition: two determine a linear and a quadratic
+/// change, and the formulas use no more.
 const MOST_RUNS: usize = 2;
 
 /// A run with its base.

@@ -1,4 +1,6 @@
-//! Why a run cannot be used (M18.1).
+//! Why a run cannot be used (M18.1). A *run* is a physics model linearised with one named parameter
+//! moved by a *step*, its *base* the condition's physics model at the same trim with the parameter
+//! nominal.
 
 /// A run that is not used, with the reason.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,10 +2,13 @@
 //! fit (step 10 in `physics`, M18.4).
 //!
 //! ```text
-//! 1  for each condition: z, tau <- the other conditions' equations;  a, b <- its own gains
+//! for a set of parameters:
+//! 1  for each condition: z, tau <- the other conditions' equations;  a, b <- its own equations
 //! 2  score <- sum over conditions of sum q^2 |y - J x|^2
 //! 3  ratio <- score over the score with no parameter
-//! 4  alone: each parameter;  stepwise: add the one that lowers the ratio most, until all are in
+//!
+//! 4  sets: each parameter alone;  stepwise, add the parameter that lowers the ratio most,
+//!    until all are in
 //! ```
 //!
 //! `z` are the parameter values, `tau` the channel delays, common to all conditions; `a`, `b` are a
@@ -22,15 +25,6 @@ pub struct Score {
     pub per_condition: Vec<f64>,
     /// Sum over the conditions, divided by the same sum without any parameter.
     pub ratio: f64,
-}
-
-impl Score {
-    fn new(per_condition: Vec<f64>, baseline: f64) -> Self {
-        Self {
-            ratio: per_condition.iter().sum::<f64>() / baseline,
-            per_condition,
-        }
-    }
 }
 
 /// A step in the stepwise list.
@@ -53,52 +47,19 @@ pub struct Scores {
 
 impl Scores {
     /// Computes the scores; `fitted` are the fitted parameters' indices. Returns `None` for fewer
-    /// than two conditions, if a condition cannot be predicted, or if there is no misfit to explain.
+    /// than two conditions, if a condition cannot be predicted, or if there is no misfit to
+    /// explain.
     pub(super) fn new(equations: &PassEquations, fitted: &[usize]) -> Option<Self> {
-        if equations.counting_conditions() < 2 {
+        if equations.count_conditions_with_data() < 2 {
             return None;
         }
-        let scorer = Scorer::new(equations);
-        let without_parameters = scorer.score(&[])?;
-        let baseline: f64 = without_parameters.iter().sum();
-        if baseline.is_nan() || baseline <= 0.0 {
-            return None;
-        }
-        // Steps 3 and 4
+        let scorer = Scorer::new(equations)?;
+        // Step 4
         let mut alone = Vec::with_capacity(fitted.len());
         for index in 0..fitted.len() {
-            alone.push(Score::new(scorer.score(&[index])?, baseline).ratio);
+            alone.push(scorer.score(&[index])?.ratio);
         }
-        let mut stepwise = vec![ScoreStep {
-            added: None,
-            score: Score::new(without_parameters, baseline),
-        }];
-        let mut chosen: Vec<usize> = Vec::with_capacity(fitted.len());
-        while chosen.len() < fitted.len() {
-            let mut best: Option<(usize, Score)> = None;
-            for index in 0..fitted.len() {
-                if chosen.contains(&index) {
-                    continue;
-                }
-                chosen.push(index);
-                let candidate = scorer.score(&chosen);
-                chosen.pop();
-                let candidate = Score::new(candidate?, baseline);
-                let is_better = match &best {
-                    Some((_, best)) => candidate.ratio < best.ratio,
-                    None => true,
-                };
-                if is_better {
-                    best = Some((index, candidate));
-                }
-            }
-            let (index, score) = best?;
-            chosen.push(index);
-            stepwise.push(ScoreStep {
-                added: Some(fitted[index]),
-                score,
-            });
-        }
+        let stepwise = scorer.stepwise(fitted)?;
         Some(Self { alone, stepwise })
     }
 
@@ -129,35 +90,107 @@ impl Scores {
     }
 }
 
-/// The equations without each condition.
+/// The equations, and the score with no parameter, to which others are compared. Parameters are
+/// given by index among the fitted parameters.
 struct Scorer<'a> {
     equations: &'a PassEquations,
+    /// For each condition, the equations summed over the other conditions.
     others: Vec<SharedSystem>,
+    score_without_parameters: f64,
 }
 
 impl<'a> Scorer<'a> {
-    fn new(equations: &'a PassEquations) -> Self {
-        Self {
-            equations,
-            others: equations
-                .reduced
-                .iter()
-                .map(|reduced| equations.system.without(reduced))
-                .collect(),
+    /// Computes the score with no parameter; `None` if a condition cannot be predicted, or if this
+    /// score is zero.
+    fn new(equations: &'a PassEquations) -> Option<Self> {
+        let others: Vec<SharedSystem> = equations
+            .reduced
+            .iter()
+            .map(|reduced| equations.system.without(reduced))
+            .collect();
+        let score_without_parameters: f64 = squared_errors(equations, &others, &[])?.iter().sum();
+        if score_without_parameters > 0.0 {
+            Some(Self {
+                equations,
+                others,
+                score_without_parameters,
+            })
+        } else {
+            None
         }
     }
 
-    /// Returns each condition's score with these parameters, given by index among the fitted
-    /// parameters (steps 1 and 2).
-    fn score(&self, parameters: &[usize]) -> Option<Vec<f64>> {
-        let equations = self.equations;
-        let mut scores = Vec::with_capacity(self.others.len());
-        for (index, others) in self.others.iter().enumerate() {
-            let x = others.solve_for(parameters)?;
-            let condition = &equations.conditions[index];
-            let gains = condition.ln_gains(&equations.reduced[index], equations.scale, &x);
-            scores.push(condition.squared_error(&x, &gains));
+    /// Adds the parameters one by one, each time the one with the lowest ratio (step 4); `fitted`
+    /// are the fitted parameters' indices.
+    fn stepwise(&self, fitted: &[usize]) -> Option<Vec<ScoreStep>> {
+        let mut steps = vec![ScoreStep {
+            added: None,
+            score: self.score(&[])?,
+        }];
+        let mut chosen: Vec<usize> = Vec::with_capacity(fitted.len());
+        while chosen.len() < fitted.len() {
+            let best = self.best_addition(&chosen, fitted.len())?;
+            chosen.push(best.index);
+            steps.push(ScoreStep {
+                added: Some(fitted[best.index]),
+                score: best.score,
+            });
         }
-        Some(scores)
+        Some(steps)
     }
+
+    /// Finds the parameter whose addition to `chosen` gives the lowest ratio, the first if several
+    /// are equal; `count` is the number of fitted parameters.
+    fn best_addition(&self, chosen: &[usize], count: usize) -> Option<Addition> {
+        let mut best: Option<Addition> = None;
+        for index in 0..count {
+            if chosen.contains(&index) {
+                continue;
+            }
+            let mut parameters = chosen.to_vec();
+            parameters.push(index);
+            let score = self.score(&parameters)?;
+            let is_better = match &best {
+                Some(best) => score.ratio < best.score.ratio,
+                None => true,
+            };
+            if is_better {
+                best = Some(Addition { index, score });
+            }
+        }
+        best
+    }
+
+    /// Returns the score with these parameters (steps 1 to 3).
+    fn score(&self, parameters: &[usize]) -> Option<Score> {
+        let per_condition = squared_errors(self.equations, &self.others, parameters)?;
+        Some(Score {
+            ratio: per_condition.iter().sum::<f64>() / self.score_without_parameters,
+            per_condition,
+        })
+    }
+}
+
+/// Returns each condition's `sum q^2 |y - J x|^2`, predicted from the others with these parameters
+/// (steps 1 and 2); `others` has the equations summed over the other conditions.
+fn squared_errors(
+    equations: &PassEquations,
+    others: &[SharedSystem],
+    parameters: &[usize],
+) -> Option<Vec<f64>> {
+    let mut squared_errors = Vec::with_capacity(others.len());
+    for (index, others) in others.iter().enumerate() {
+        let x = others.solve_for(parameters)?;
+        let condition = &equations.conditions[index];
+        let gains = condition.ln_gains(&equations.reduced[index], equations.scale, &x);
+        squared_errors.push(condition.squared_error(&x, &gains));
+    }
+    Some(squared_errors)
+}
+
+/// A parameter added to others, and the score with all of them.
+struct Addition {
+    /// Index among the fitted parameters.
+    index: usize,
+    score: Score,
 }

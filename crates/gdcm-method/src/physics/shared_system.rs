@@ -21,7 +21,9 @@ pub(super) struct SharedSystem {
     counts: UnknownCounts,
     /// Prior standard deviation of a delay \[s\]; 0: no delays.
     delay_sd_s: f64,
+    /// `sum_c S'_c`.
     matrix: DMatrix<f64>,
+    /// `sum_c g'_c`.
     right: DVector<f64>,
 }
 
@@ -94,15 +96,15 @@ impl SharedSystem {
         let mut information = self.matrix.view((0, 0), (size, size)).into_owned();
         if self.delay_sd_s > 0.0 {
             let delays = self.counts.channels();
-            let mut own = self
+            let mut delay_block = self
                 .matrix
                 .view((size, size), (delays, delays))
                 .into_owned();
             for delay in 0..delays {
-                own[(delay, delay)] += self.prior(size + delay);
+                delay_block[(delay, delay)] += self.prior(size + delay);
             }
             let border = self.matrix.view((size, 0), (delays, size)).into_owned();
-            information -= border.tr_mul(&Cholesky::new(own)?.solve(&border));
+            information -= border.tr_mul(&Cholesky::new(delay_block)?.solve(&border));
         }
         symmetrise(&mut information);
         Some(information)

@@ -1,11 +1,15 @@
 //! Decides which parameters are named, and how much they explain together (step 12 in `physics`,
 //! M18.4).
 //!
-//! `z` is a parameter's change in plausible standard deviations. A parameter is named if all of
-//! these are true: its interval excludes 0; its step in the stepwise list lowers the ratio by 0.01
-//! or more; `|z| < 3`; explained is 0.1 or more; four conditions or more are in the fit. Ratio,
-//! stepwise list and explained share are those of `score`, the learned share that of
-//! `identifiability`.
+//! `z` is a parameter's change in plausible standard deviations. The *ratio* is the misfit of
+//! conditions that are left out of the fit, over that misfit without any parameter; the *stepwise
+//! list* adds the parameters one by one, and the *explained* share is 1 minus its least ratio
+//! (`score`). *Learned* is the share of the prior variance that the data remove.
+//!
+//! A parameter is named if all of these are true: its interval excludes 0; its step in the stepwise
+//! list lowers the ratio by 0.01 or more; `|z| < 3`; explained is 0.1 or more; four conditions or
+//! more are in the fit. The thresholds were set by trial on simulated helicopters with known
+//! parameters; `docs/physics.md`, M18.7, shows the success on others.
 
 use super::intervals::LEAST_CONDITIONS;
 use super::problem::GREATEST_VALUE;

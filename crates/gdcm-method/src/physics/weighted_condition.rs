@@ -6,7 +6,7 @@
 //! d_k <- (dH/dz_k) / H
 //! y <- l + sum_k d_k z_k - j omega (tau_o + tau_i) + (a_oc + b_ic)
 //! v <- (d_k of the fitted parameters, -j omega, 1, y)
-//! q^2 <- squared weight of the response at the frequency;  block += q^2 Re(conj(v) v')
+//! q^2 <- squared weight of the response at the frequency;  block += q^2 Re(conj(v) v^T)
 //! ```
 //!
 //! `R` is the identified response, `H` the physics response, `H^` the same with the channels'
@@ -46,14 +46,14 @@ impl<'a> WeightedCondition<'a> {
     }
 
     /// Computes the condition's blocks at the present pass's unknowns.
-    pub(super) fn blocks(&self, pass: &PassPoint<'_>) -> ConditionBlocks {
+    pub(super) fn blocks(&self, point: &PassPoint<'_>) -> ConditionBlocks {
         let linearisation = Linearisation {
             condition: self,
-            pass,
-            physics: self.condition.family.evaluate(pass.z, self.omega),
+            point,
+            physics: self.condition.family.evaluate(point.z, self.omega),
         };
         let points = self.omega.len();
-        let parameters = pass.fitted.len();
+        let parameters = point.fitted.len();
         let mut squared_weights = self.weights.map(|_, _| vec![0.0; points]);
         let mut responses = self
             .weights
@@ -65,7 +65,7 @@ impl<'a> WeightedCondition<'a> {
                 if !weight.counts() {
                     continue;
                 }
-                let Some(error) = linearisation.set(&mut v, pair, k) else {
+                let Some(error) = linearisation.fill(&mut v, pair, k) else {
                     continue;
                 };
                 let squared_weight = weight.squared(error);
@@ -102,35 +102,37 @@ pub(super) struct PassPoint<'a> {
 /// A condition's residuals, linearised around the present pass.
 struct Linearisation<'a> {
     condition: &'a WeightedCondition<'a>,
-    pass: &'a PassPoint<'a>,
+    point: &'a PassPoint<'a>,
+    /// `H` and its derivatives at the point.
     physics: FamilyResponse,
 }
 
 impl Linearisation<'_> {
-    /// Sets `v` for a response at frequency `k`, and returns `l = ln(R / H^)`; `None` if a value is
-    /// missing or not finite.
-    fn set(&self, v: &mut [Complex<f64>], pair: Pair, k: usize) -> Option<Complex<f64>> {
+    /// Fills `v` for a response at frequency `k`, and returns `l = ln(R / H^)`; `None` if a value
+    /// is missing or not finite.
+    fn fill(&self, v: &mut [Complex<f64>], pair: Pair, k: usize) -> Option<Complex<f64>> {
         let WeightedCondition {
             condition,
             omega,
             weights,
         } = self.condition;
-        let channels = &self.pass.channels;
-        let place = (pair.output * weights.inputs() + pair.input) * omega.len() + k;
-        let response = self.physics.response[place];
+        let channels = &self.point.channels;
+        let index = (pair.output * weights.inputs() + pair.input) * omega.len() + k;
+        let response = self.physics.response[index];
+        // ln(H^ / H).
         let channel = Complex::new(channels.ln_gain(pair), -omega[k] * channels.delay_s(pair));
         let error = log_ratio(condition.flight.curve(pair)[k], response) - channel;
         // Principal value of the phase error.
         let error = Complex::new(error.re, wrap(error.im));
-        let [derivatives @ .., delay, gain, target] = v else {
+        let [derivatives @ .., delay, gain, y] = v else {
             return None;
         };
         *delay = Complex::new(0.0, -omega[k]);
         *gain = Complex::new(1.0, 0.0);
-        *target = error + channel;
-        for (derivative, &parameter) in derivatives.iter_mut().zip(self.pass.fitted) {
-            *derivative = self.physics.derivatives[parameter][place] / response;
-            *target += *derivative * self.pass.z[parameter];
+        *y = error + channel;
+        for (derivative, &parameter) in derivatives.iter_mut().zip(self.point.fitted) {
+            *derivative = self.physics.derivatives[parameter][index] / response;
+            *y += *derivative * self.point.z[parameter];
         }
         if v.iter().all(|value| value.is_finite()) {
             Some(error)

@@ -4,7 +4,8 @@
 //! ```text
 //! Theta = H / (j omega) for a rate, H for an attitude;  H: response of the output to the input
 //! 1  evaluate Theta on the grid; keep the longest run of values without a gap
-//! 2  unwrap the phase, and add whole turns so that it is in (-270, 90] deg at the lowest frequency of the band
+//! 2  unwrap the phase, and add whole turns so that it is in (-270, 90] deg at the lowest frequency
+//!    of the band
 //! 3  between grid points: evaluate Theta exactly, on the branch of the neighbouring phases
 //! 4  beyond the grid: unwrap from a known phase (`phases_from`)
 //! ```
@@ -23,14 +24,17 @@ use gdcm_model::response::wrap;
 use gdcm_model::units::physical_unit::PhysicalUnit;
 use gdcm_model::units::{number, ratio_to_db};
 
-/// Number of frequencies on which crossings are searched.
+/// Number of frequencies on which a model's crossings are searched: more resolve two crossings that
+/// lie closer together, but cost more evaluations.
 const SEARCH_POINTS: usize = 400;
 /// A model is searched from the lower end of the band divided by this factor to the upper end of
-/// the band times this factor.
+/// the band times this factor, because the phase may fall through -180 deg outside the band.
 const SEARCH_BEYOND_BAND: f64 = 4.0;
-/// Phases \[deg\] at the lowest band frequency that do not indicate a reversed sign: all but 45 to
-/// 135 deg, which on the branch (-270, 90] are -270 to -225 deg and 45 to 90 deg.
-const NOT_REVERSED_DEG: RangeInclusive<f64> = -225.0..=45.0;
+/// Phases \[deg\] at the lowest band frequency that an attitude which follows its input can have:
+/// all but 45 to 135 deg, which on the branch (-270, 90] are -270 to -225 deg and 45 to 90 deg. It
+/// usually has 0 to -90 deg, and 180 to 90 deg with a reversed sign; near 180 deg, however, the
+/// phase can also be a lag.
+const FOLLOWING_PHASE_DEG: RangeInclusive<f64> = -225.0..=45.0;
 
 /// Quantity that an output represents: an attitude or its rate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -123,7 +127,7 @@ pub struct AttitudeResponse<'a> {
     pub(super) omega: Vec<f64>,
     /// `20 log10 |Theta|` on the grid, up to a constant that depends on the units.
     pub(super) magnitude_db: Vec<f64>,
-    /// Continuous phase \[rad\] on the grid.
+    /// Continuous phase \[rad\] on the grid, in (-270, 90] deg at `lowest_of_band`.
     pub(super) phase: Vec<f64>,
     /// The lowest band frequency's grid index, which fixes the phase branch.
     pub(super) lowest_of_band: usize,
@@ -197,7 +201,7 @@ impl<'a> AttitudeResponse<'a> {
     /// follows its input has 0 to -90 deg.
     pub fn reversed_phase_deg(&self) -> Option<f64> {
         let phase_deg = self.phase[self.lowest_of_band].to_degrees();
-        if NOT_REVERSED_DEG.contains(&phase_deg) {
+        if FOLLOWING_PHASE_DEG.contains(&phase_deg) {
             None
         } else {
             Some(phase_deg)
@@ -212,9 +216,9 @@ impl<'a> AttitudeResponse<'a> {
     /// Returns the phase \[rad\] at `omega` \[rad/s\] on the same branch as the surrounding grid
     /// points (step 3); `None` outside the grid or without a response.
     pub fn phase_at(&self, omega: f64) -> Option<f64> {
-        let near = between(&self.omega, &self.phase, omega)?;
+        let interpolated = between(&self.omega, &self.phase, omega)?;
         let principal = polar(self.response, self.output, &[omega])[0]?.phase;
-        Some(near + wrap(principal - near))
+        Some(interpolated + wrap(principal - interpolated))
     }
 
     /// Returns the phases \[rad\] at the ascending frequencies `omega` \[rad/s\], unwrapped from

@@ -1,32 +1,26 @@
-//! Bandwidth and phase delay, read from an attitude response (M17.1).
+//! Bandwidth `omega_BW` and phase delay `tau_p`, read from the attitude response `Theta` (M17.1).
 //!
 //! ```text
-//! 1  Theta = H/(j omega) for a rate, H for an attitude; phase continuous, in (-270, 90] deg at the lowest frequency of the band
-//! 2  omega_180, omega_phase: the lowest omega from the band's lower end on at which the phase
-//!    falls through -180, -135 deg; where the phase is below that level at the band's lowest
-//!    frequency: the next crossing below the band; without one, the first within
-//! 3  omega_gain: the greatest omega < omega_180 at which |Theta| = 10^(6/20) |Theta(omega_180)|
-//! 4  omega_BW = omega_phase for attitude command; min(omega_phase, omega_gain) for rate command; without omega_gain:
-//!    omega_phase if there is no omega_180 either, otherwise none, because omega_BW is below the lowest frequency
-//! 5  Phi at 400 logarithmic points in omega_180 ... 2 omega_180; its maximum departure from the
-//!    line between its ends
-//! 6  up to 10 deg: tau_p = -(Phi(2 omega_180) + pi) / (2 omega_180)
-//! 7  above: least-squares line through Phi over omega; tau_p = its phase loss from omega_180 to 2 omega_180, over 2 omega_180
+//! 1  Theta(j omega), with its continuous phase Phi                        (`attitude_response`)
+//! 2  omega_180, omega_phase: where Phi falls through -180, -135 deg       (phase_crossing)
+//! 3  omega_gain: greatest omega < omega_180 at which |Theta| is 6 dB
+//!    above |Theta(omega_180)|                                             (gain_crossing)
+//! 4  omega_BW: omega_phase for attitude command,
+//!    min(omega_phase, omega_gain) for rate command                        (limiting_margin)
+//! 5  tau_p: phase lost from omega_180 to 2 omega_180, over 2 omega_180    (`phase_delay`)
 //! ```
 //!
-//! `H` is the response of the output to the input, `Theta` the attitude response, `Phi` its phase,
-//! `omega_BW` the bandwidth, `tau_p` the phase delay.
+//! Standard deviations come from `bandwidth_deviation`. A number read above the band is marked, or
+//! refused where [`AboveBand::Refused`] is set.
 //!
 //! ADS-33E-PRF, "Handling qualities requirements for military rotorcraft", 2000, 3.3.2.1 and figure
-//! 4; MIL-DTL-32742. `attitude_response` does step 1, `phase_delay` steps 5 to 7; standard
-//! deviations come from `bandwidth_deviation`. A number read above the band is marked, or refused
-//! where [`AboveBand::Refused`] is set.
+//! 4; MIL-DTL-32742.
 
 use serde::{Deserialize, Serialize};
 
 use gdcm_model::dataset::Band;
 
-pub use super::bandwidth_deviation::PairBand;
+pub use super::bandwidth_deviation::PairUncertainty;
 pub use super::bandwidth_metric::{AboveBand, Metric, NoMetric};
 pub use super::phase_delay::PhaseLine;
 pub use super::substitution_bar::substitution_bar;
@@ -34,10 +28,10 @@ pub use super::substitution_bar::substitution_bar;
 use super::attitude_response::AttitudeResponse;
 use super::root_search::root_between;
 
-/// Gain margin at `omega_gain` \[dB\].
+/// Gain margin at `omega_gain` \[dB\]: a pilot may double the gain.
 const GAIN_MARGIN_DB: f64 = 6.0;
-/// Phase at `omega_180` \[deg\].
-const NEUTRAL_DEG: f64 = -180.0;
+/// Phase at `omega_180` \[deg\]: a pilot's loop whose gain is 1 there is neutrally stable.
+const NEUTRAL_STABILITY_DEG: f64 = -180.0;
 /// Phase at `omega_phase` \[deg\]: a 45 deg margin.
 const PHASE_MARGIN_DEG: f64 = -135.0;
 
@@ -93,12 +87,12 @@ pub struct Bandwidth {
 }
 
 impl Bandwidth {
-    /// Computes bandwidth and phase delay of `attitude`, with standard deviations if an uncertainty
-    /// band is available.
+    /// Computes bandwidth and phase delay of `attitude`, with standard deviations if those of the
+    /// response are available.
     pub fn read(
         attitude: &AttitudeResponse<'_>,
         settings: &BandwidthSettings,
-        deviation: Option<PairBand<'_>>,
+        deviation: Option<PairUncertainty<'_>>,
     ) -> Self {
         let reading = Reading {
             attitude,
@@ -106,13 +100,13 @@ impl Bandwidth {
             deviation,
         };
         // Step 2
-        let omega_180 = reading.phase_crossing(NEUTRAL_DEG);
+        let omega_180 = reading.phase_crossing(NEUTRAL_STABILITY_DEG);
         let omega_phase = reading.phase_crossing(PHASE_MARGIN_DEG);
         // Step 3
         let omega_gain = omega_180.and_then(|omega_180| reading.gain_crossing(omega_180));
         // Step 4
         let margin = reading.limiting_margin(omega_180, omega_phase, omega_gain);
-        // Steps 5 to 7
+        // Step 5
         let phase_delay = omega_180.and_then(|omega_180| reading.phase_delay(omega_180));
         Self {
             omega_180,
@@ -135,11 +129,11 @@ impl Bandwidth {
     }
 }
 
-/// A response with its evaluation settings.
+/// A response with the settings by which bandwidth and phase delay are read from it.
 struct Reading<'a> {
     attitude: &'a AttitudeResponse<'a>,
     settings: &'a BandwidthSettings,
-    deviation: Option<PairBand<'a>>,
+    deviation: Option<PairUncertainty<'a>>,
 }
 
 /// The bandwidth with the margin that sets it.
@@ -196,34 +190,34 @@ impl Reading<'_> {
         });
         let deviation = self
             .deviation
-            .and_then(|band| band.phase_crossing_sd(self.attitude, root));
+            .and_then(|uncertainty| uncertainty.phase_crossing_sd(self.attitude, root));
         self.metric(root, [root, root], deviation)
     }
 
     /// Returns `k` for the grid interval `[k, k + 1]` in which the phase falls through `level`
-    /// \[rad\]: the lowest from the band's lower end on; but if the phase there is not above
-    /// `level`, the next interval below the band, if any.
+    /// \[rad\] (step 2): the first from the band's lower end on. If the phase is not above `level`
+    /// there, it has fallen through already: then the nearest interval below the band, if any.
     fn falling_interval(&self, level: f64) -> Option<usize> {
         let phase = &self.attitude.phase;
-        let first = self.attitude.lowest_of_band;
+        let band_start = self.attitude.lowest_of_band;
         let last = phase.len() - 1;
-        if phase[first] <= level {
-            let below_band = (0..first).rev().find(|&k| falls_at(phase, k, level));
+        if phase[band_start] <= level {
+            let below_band = (0..band_start).rev().find(|&k| falls_at(phase, k, level));
             if below_band.is_some() {
                 return below_band;
             }
         }
-        (first..last).find(|&k| falls_at(phase, k, level))
+        (band_start..last).find(|&k| falls_at(phase, k, level))
     }
 
     /// Returns the reason why the phase does not fall through a level.
     fn missing_crossing(&self, level_deg: f64) -> NoMetric {
         let omega = &self.attitude.omega;
-        let first = self.attitude.lowest_of_band;
-        if self.attitude.phase[first] <= level_deg.to_radians() {
+        let band_start = self.attitude.lowest_of_band;
+        if self.attitude.phase[band_start] <= level_deg.to_radians() {
             NoMetric::BelowFromStart {
                 level_deg,
-                from: omega[first],
+                from: omega[band_start],
             }
         } else {
             NoMetric::NoCrossing {
@@ -234,34 +228,45 @@ impl Reading<'_> {
     }
 
     /// Returns the highest frequency below `omega_180` at which the magnitude exceeds its value at
-    /// `omega_180` by 6 dB.
+    /// `omega_180` by 6 dB (step 3).
     fn gain_crossing(&self, omega_180: Metric) -> Result<Metric, NoMetric> {
         let grid = &self.attitude.omega;
-        let top = omega_180.value;
-        let none = NoMetric::NoGainCrossing {
-            omega_180: top,
+        let omega_180 = omega_180.value;
+        let no_crossing = NoMetric::NoGainCrossing {
+            omega_180,
             down_to: grid[0],
         };
-        let level = self.attitude.magnitude_db_at(top).ok_or(none)? + GAIN_MARGIN_DB;
-        let below = grid.partition_point(|omega| *omega < top);
+        let magnitude_at_180 = self
+            .attitude
+            .magnitude_db_at(omega_180)
+            .ok_or(no_crossing)?;
+        let level = magnitude_at_180 + GAIN_MARGIN_DB;
+        // Count of grid points below omega_180.
+        let below = grid.partition_point(|omega| *omega < omega_180);
         // The magnitude at omega_180 itself is below the level: the first grid point above the
-        // level, counted from the top, brackets the crossing.
+        // level, counted downwards from omega_180, brackets the crossing.
         let k = (0..below)
             .rev()
             .find(|&k| self.attitude.magnitude_db[k] >= level)
-            .ok_or(none)?;
-        let upper = if k + 1 < below { grid[k + 1] } else { top };
+            .ok_or(no_crossing)?;
+        let upper = if k + 1 < below {
+            grid[k + 1]
+        } else {
+            omega_180
+        };
         let root = root_between([grid[k], upper], |omega| {
             let magnitude = self.attitude.magnitude_db_at(omega)?;
             Some(level - magnitude)
         });
         let deviation = self
             .deviation
-            .and_then(|band| band.gain_crossing_sd(self.attitude, root, top));
-        self.metric(root, [root, top], deviation)
+            .and_then(|uncertainty| uncertainty.gain_crossing_sd(self.attitude, root, omega_180));
+        self.metric(root, [root, omega_180], deviation)
     }
 
-    /// Returns the bandwidth and the margin that sets it (step 4).
+    /// Returns the bandwidth and the margin that sets it (step 4). Without `omega_gain`, a rate
+    /// command has the bandwidth `omega_phase` if there is no `omega_180` either, and no gain
+    /// margin to find; otherwise none, because it lies below the lowest frequency.
     fn limiting_margin(
         &self,
         omega_180: Result<Metric, NoMetric>,
@@ -277,8 +282,6 @@ impl Reading<'_> {
         }
         match gain {
             Ok(gain) => self.lower_margin(phase, gain),
-            // No 6 dB gain margin exists above the lowest frequency, so the bandwidth lies below
-            // it.
             Err(reason) if omega_180.is_ok() => Err(reason),
             Err(_) => Ok(LimitingMargin {
                 metric: phase,
@@ -312,7 +315,9 @@ impl Reading<'_> {
         let Some(line) = PhaseLine::read(self.attitude, from) else {
             return Err(NoMetric::ResponseEnds { needed: to });
         };
-        let deviation = self.deviation.and_then(|band| band.phase_delay_sd(from));
+        let deviation = self
+            .deviation
+            .and_then(|uncertainty| uncertainty.phase_delay_sd(from));
         let metric = self.metric(line.phase_delay_s(), [from, to], deviation)?;
         Ok(PhaseDelay { metric, line })
     }

@@ -3,7 +3,8 @@
 //!
 //! ```text
 //! phase crossing:  sd = sd_phase(omega) / |phase'(omega)|
-//! gain crossing:   sd^2 = (sd_dB(omega_gain)^2 + sd_dB(omega_180)^2 + (m'(omega_180) sd(omega_180))^2) / m'(omega_gain)^2
+//! gain crossing:   sd^2 = (sd_dB(omega_gain)^2 + sd_dB(omega_180)^2
+//!                          + (m'(omega_180) sd(omega_180))^2) / m'(omega_gain)^2
 //! phase delay:     sd = sqrt(sd_phase(omega_180)^2 + sd_phase(2 omega_180)^2) / (2 omega_180)
 //! ```
 //!
@@ -27,18 +28,19 @@ use gdcm_model::response::interpolation::between;
 
 use super::attitude_response::AttitudeResponse;
 
-/// Half the distance between the two points in a difference quotient, relative to the frequency.
+/// Half the distance between the two points in a difference quotient, relative to the frequency. A
+/// compromise: a larger step adds curvature to the quotient, a smaller one rounding errors.
 const HALF_STEP: f64 = 1e-4;
 
-/// An identified response's uncertainty band, linear in log omega and undefined outside its
-/// frequencies (M14).
+/// An identified response's standard deviations over frequency, linear in log omega and undefined
+/// outside their frequencies (M14).
 #[derive(Clone, Copy, Debug)]
-pub struct PairBand<'a> {
+pub struct PairUncertainty<'a> {
     pub bands: &'a ModelBands,
     pub pair: Pair,
 }
 
-impl PairBand<'_> {
+impl PairUncertainty<'_> {
     /// Returns the magnitude's standard deviation \[dB\] at `omega` \[rad/s\].
     fn sd_db(&self, omega: f64) -> Option<f64> {
         between(
@@ -69,8 +71,8 @@ impl PairBand<'_> {
         Some(self.sd_phase(omega)? / slope.abs())
     }
 
-    /// Returns the standard deviation \[rad/s\] for the frequency at which the magnitude exceeds
-    /// its value at `omega_180` by 6 dB.
+    /// Returns the standard deviation \[rad/s\] for the frequency `omega_gain` at which the
+    /// magnitude exceeds its value at `omega_180` by 6 dB.
     pub(super) fn gain_crossing_sd(
         &self,
         attitude: &AttitudeResponse<'_>,
@@ -79,11 +81,12 @@ impl PairBand<'_> {
     ) -> Option<f64> {
         let from_omega_180 =
             magnitude_slope(attitude, omega_180)? * self.phase_crossing_sd(attitude, omega_180)?;
-        let level = self
+        // Of the distance between the magnitude at omega_gain and its required value \[dB\].
+        let level_sd_db = self
             .sd_db(omega_gain)?
             .hypot(self.sd_db(omega_180)?)
             .hypot(from_omega_180);
-        Some(level / magnitude_slope(attitude, omega_gain)?.abs())
+        Some(level_sd_db / magnitude_slope(attitude, omega_gain)?.abs())
     }
 
     /// Returns the phase delay's standard deviation \[s\].

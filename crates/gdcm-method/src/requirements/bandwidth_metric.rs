@@ -18,14 +18,14 @@ pub enum AboveBand {
 pub struct Metric {
     /// The value: \[rad/s\] or \[s\].
     pub value: f64,
-    /// Standard deviation to first order, from the response's uncertainty band (M14); `None` if the
-    /// band does not cover the frequencies needed, or is unavailable.
+    /// Standard deviation to first order, from the response's own over frequency (M14); `None` if
+    /// these do not cover the frequencies needed, or are unavailable.
     pub deviation: Option<f64>,
     /// Lowest and highest frequency \[rad/s\] at which the response determines the value.
     pub read_at: [f64; 2],
-    /// Whether the value depends on the model above the band.
+    /// Whether the value depends on the model above the identified band.
     pub rests_above_band: bool,
-    /// Whether the value depends on the model below the band.
+    /// Whether the value depends on the model below the identified band.
     pub rests_below_band: bool,
 }
 

@@ -16,7 +16,7 @@ use super::attitude_response::{
     AttitudeResponse, AttitudeResponseError, ResponseAt, search_frequencies,
 };
 use super::bandwidth::{
-    AboveBand, Bandwidth, BandwidthSettings, CommandType, Metric, NoMetric, PairBand,
+    AboveBand, Bandwidth, BandwidthSettings, CommandType, Metric, NoMetric, PairUncertainty,
     substitution_bar,
 };
 use super::known_answers::{answers, attitudes, number};
@@ -58,7 +58,7 @@ fn evaluate(
     response: &ResponseAt<'_>,
     output: AttitudeOutput,
     settings: &BandwidthSettings,
-    deviation: Option<PairBand<'_>>,
+    deviation: Option<PairUncertainty<'_>>,
 ) -> Bandwidth {
     let frequencies = search_frequencies(settings.band);
     let attitude = AttitudeResponse::new(response, output, &frequencies, settings.band).unwrap();
@@ -428,7 +428,7 @@ fn turned_bandwidth(turn_deg: f64, bands: &ModelBands) -> Bandwidth {
     let [.., short] = attitudes();
     let turn = Complex::from_polar(1.0, turn_deg.to_radians());
     let rate = at_frequencies(|s| s * short(s) * turn);
-    let deviation = PairBand { bands, pair: ONLY };
+    let deviation = PairUncertainty { bands, pair: ONLY };
     evaluate(
         &rate,
         AttitudeOutput::Rate,

@@ -16,8 +16,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use gdcm_model::message_text::quoted;
-use gdcm_model::units::number;
+pub use super::level_boundary_error::LevelBoundaryError;
 
 /// A boundary: a polyline over bandwidth and phase delay.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -30,8 +29,8 @@ pub struct LevelBoundary {
     pub level: Option<u32>,
     /// Output to which the boundary applies ("P").
     pub axis: String,
-    /// Points \[rad/s, s\]: bandwidth and phase delay, in drawing order; at least two. Where `level`
-    /// is given, neither coordinate decreases.
+    /// Points \[rad/s, s\]: bandwidth and phase delay, in drawing order; at least two. Where
+    /// `level` is given, neither coordinate decreases.
     pub points: Vec<[f64; 2]>,
     /// Document, paragraph and figure that give the points, and the error in reading them.
     #[serde(default, skip_serializing_if = "String::is_empty")]
@@ -41,9 +40,10 @@ pub struct LevelBoundary {
 /// Where a point lies relative to a boundary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum BoundarySide {
-    /// On the boundary or to its right.
-    Within,
-    Beyond,
+    /// On the boundary or to its right: the point meets the boundary's level.
+    OnOrRight,
+    /// To the left of the boundary: the point does not meet its level.
+    Left,
     /// Above and to the right of the boundary's end, where it decides nothing.
     Undrawn,
 }
@@ -72,96 +72,6 @@ impl AssessedLevel {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Vec<LevelBoundary>")]
 pub struct LevelBoundaries(Vec<LevelBoundary>);
-
-/// Reasons why a level boundary is invalid.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum LevelBoundaryError {
-    #[error("boundary {entry}: expected a name, found none")]
-    NoName {
-        /// Entry number, counted from 1.
-        entry: usize,
-    },
-    #[error(
-        "boundary {entry}, {}: expected the name of an output as its axis, found none",
-        quoted(name)
-    )]
-    NoAxis {
-        /// Entry number, counted from 1.
-        entry: usize,
-        name: String,
-    },
-    #[error(
-        "boundary {entry}, {}: expected at least 2 points, found {found}",
-        quoted(name)
-    )]
-    TooFewPoints {
-        /// Entry number, counted from 1.
-        entry: usize,
-        name: String,
-        found: usize,
-    },
-    /// A point has a coordinate that is negative or not finite.
-    #[error(
-        "boundary {entry}, {}, point {point}: expected a bandwidth (rad/s) and a phase delay (s) not below zero, found {} and {}",
-        quoted(name), number(found[0]), number(found[1])
-    )]
-    Point {
-        /// Entry number, counted from 1.
-        entry: usize,
-        name: String,
-        /// Point number, counted from 1.
-        point: usize,
-        found: [f64; 2],
-    },
-    #[error(
-        "boundary {entry}, {}: expected a level of 1 or more, found 0",
-        quoted(name)
-    )]
-    LevelZero {
-        /// Entry number, counted from 1.
-        entry: usize,
-        name: String,
-    },
-    /// Bandwidth or phase delay decreases along a boundary that gives a level.
-    #[error(
-        "boundary {entry}, {}, point {point}: expected a bandwidth and a phase delay not below those of the point before, because the boundary gives a level",
-        quoted(name)
-    )]
-    Descending {
-        /// Entry number, counted from 1.
-        entry: usize,
-        name: String,
-        /// Point number, counted from 1.
-        point: usize,
-    },
-    #[error(
-        "boundary {entry}, {}: expected one boundary of level {level} for {}, found a second",
-        quoted(name),
-        quoted(axis)
-    )]
-    DuplicateLevel {
-        /// Entry number, counted from 1.
-        entry: usize,
-        name: String,
-        axis: String,
-        level: u32,
-    },
-}
-
-impl LevelBoundaryError {
-    /// Returns the stable code by which scripts and tests distinguish the errors.
-    pub fn code(&self) -> &'static str {
-        match self {
-            Self::NoName { .. } => "level-without-name",
-            Self::NoAxis { .. } => "level-without-axis",
-            Self::TooFewPoints { .. } => "too-few-level-points",
-            Self::Point { .. } => "level-point",
-            Self::LevelZero { .. } => "level-zero",
-            Self::Descending { .. } => "level-descending",
-            Self::DuplicateLevel { .. } => "duplicate-level",
-        }
-    }
-}
 
 impl LevelBoundary {
     /// Checks a boundary; `entry` counts from 1.
@@ -237,9 +147,9 @@ impl LevelBoundary {
     fn side(&self, omega_bw_rad_s: f64, phase_delay_s: f64) -> BoundarySide {
         let last_rad_s = self.points.last().map_or(0.0, |point| point[0]);
         match self.least_bandwidth(phase_delay_s) {
-            Some(least) if omega_bw_rad_s >= least => BoundarySide::Within,
-            Some(_) => BoundarySide::Beyond,
-            None if omega_bw_rad_s < last_rad_s => BoundarySide::Beyond,
+            Some(least) if omega_bw_rad_s >= least => BoundarySide::OnOrRight,
+            Some(_) => BoundarySide::Left,
+            None if omega_bw_rad_s < last_rad_s => BoundarySide::Left,
             None => BoundarySide::Undrawn,
         }
     }
@@ -318,9 +228,9 @@ impl LevelBoundaries {
         let assessing = self.assessing(axis);
         for boundary in &assessing {
             match boundary.side(omega_bw_rad_s, phase_delay_s) {
-                BoundarySide::Within => return boundary.level.map(AssessedLevel::Level),
+                BoundarySide::OnOrRight => return boundary.level.map(AssessedLevel::Level),
                 BoundarySide::Undrawn => return Some(AssessedLevel::AboveBoundaries),
-                BoundarySide::Beyond => {}
+                BoundarySide::Left => {}
             }
         }
         let last = assessing.last()?.level?;

@@ -22,6 +22,7 @@ mod bandwidth_metric;
 #[cfg(test)]
 mod bandwidth_tests;
 pub mod level_boundary;
+mod level_boundary_error;
 pub mod mode_comparison;
 #[cfg(test)]
 mod mode_comparison_tests;

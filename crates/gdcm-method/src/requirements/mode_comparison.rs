@@ -3,13 +3,16 @@
 //!
 //! ```text
 //! 1  pair every model's modes with the identified ones by distance and shape (mode_pairing)
-//! 2  name each flown mode by the states of the first model that has named states and a partner, else by its frequency (mode_name);
-//!    of equal names only the surest stays
+//! 2  name each flown mode by the states of the first model that has named states and a partner,
+//!    else by its frequency (mode_name); of equal names only the one with the lowest pairing cost
+//!    stays
 //! 3  each mode's period, time to half or double amplitude, and damping ratio (mode_values)
-//! 4  determined: the flown mode is not below the band, M14.5 determines it, and its standard deviations are within the tolerance
+//! 4  determined: the flown mode is not below the band, identification determines it (M14.5), and
+//!    its standard deviations are within the tolerance
 //! 5  verdict, the first that applies:
 //!    not paired | not determined (4) | no tolerance for the name |
-//!    within: period, and time to half or double amplitude or damping ratio, each within its tolerance (mode_tolerance) | outside
+//!    within: period, and time to half or double amplitude or damping ratio, each within its
+//!    tolerance (mode_tolerance) | outside
 //! ```
 //!
 //! A *flown* mode is a mode of the model identified from flight; M14.5 estimates the standard
@@ -127,7 +130,7 @@ pub fn compare_modes(
     for (row, &mode) in flown_modes.iter().enumerate() {
         namings.push(Naming::from_states_or_frequency(flown, mode, &models, row));
     }
-    keep_surest_names(&mut namings);
+    keep_best_paired_names(&mut namings);
     let flown_model = FlownModel {
         modes: flown.modes,
         estimates,
@@ -195,13 +198,15 @@ impl FlownModel<'_> {
         let compared = ComparedMode::new(index, mode);
         let estimate = matching_estimate(mode, self.estimates);
         let deviation = estimate.map(|estimate| ModeValues::deviation(mode, estimate));
-        let is_known = match (tolerance, &deviation) {
-            (Some(tolerance), Some(deviation)) => tolerance.is_known(&compared.values, deviation),
+        let is_within_tolerance = match (tolerance, &deviation) {
+            (Some(tolerance), Some(deviation)) => {
+                tolerance.covers_deviation(&compared.values, deviation)
+            }
             _ => true,
         };
         let is_determined = mode.frequency_rad_s >= self.band.min()
             && estimate.is_none_or(|estimate| estimate.determined)
-            && is_known;
+            && is_within_tolerance;
         FlownMode {
             mode: compared,
             deviation,
@@ -210,13 +215,14 @@ impl FlownModel<'_> {
     }
 }
 
-/// A row's name, and how doubtful the name is.
+/// A row's name, and how closely the mode that gives it is paired.
 #[derive(Clone, Copy, Debug)]
 struct Naming {
     name: Option<ModeName>,
     named_by: NamedBy,
-    /// Pairing cost for the mode whose states give the name; infinite for a name by frequency.
-    doubt: f64,
+    /// Pairing cost for the mode whose states give the name (`mode_pairing`): 0 for the flown mode
+    /// itself; infinite for a name by frequency, which any name by states displaces.
+    pairing_cost: f64,
 }
 
 impl Naming {
@@ -243,7 +249,7 @@ impl Naming {
         Self {
             name,
             named_by,
-            doubt: f64::INFINITY,
+            pairing_cost: f64::INFINITY,
         }
     }
 
@@ -253,20 +259,20 @@ impl Naming {
             (name, NamedBy::States) => Some(Self {
                 name,
                 named_by: NamedBy::States,
-                doubt: pair.cost,
+                pairing_cost: pair.cost,
             }),
             (_, NamedBy::Frequency) => None,
         }
     }
 }
 
-/// Removes a duplicate name from all rows except the least doubtful; among equally doubtful rows
-/// the slowest mode keeps the name.
-fn keep_surest_names(namings: &mut [Naming]) {
-    let mut by_doubt: Vec<usize> = (0..namings.len()).collect();
-    by_doubt.sort_by(|&a, &b| namings[a].doubt.total_cmp(&namings[b].doubt));
+/// Removes a duplicate name from all rows except the one with the lowest pairing cost; among equal
+/// costs the slowest mode, which comes first, keeps the name.
+fn keep_best_paired_names(namings: &mut [Naming]) {
+    let mut by_cost: Vec<usize> = (0..namings.len()).collect();
+    by_cost.sort_by(|&a, &b| namings[a].pairing_cost.total_cmp(&namings[b].pairing_cost));
     let mut taken: Vec<ModeName> = Vec::new();
-    for row in by_doubt {
+    for row in by_cost {
         let Some(name) = namings[row].name else {
             continue;
         };
@@ -292,7 +298,7 @@ fn verdict(
     }
     match tolerance {
         None => ModeVerdict::NoTolerance,
-        Some(tolerance) if tolerance.holds(&flown.mode.values, &counterpart.values) => {
+        Some(tolerance) if tolerance.contains(&flown.mode.values, &counterpart.values) => {
             ModeVerdict::Within
         }
         Some(_) => ModeVerdict::Outside,

@@ -10,15 +10,15 @@
 //!       oscillation: Dutch roll
 //!       real, p at least half of these: roll subsidence; otherwise, below 1 rad/s: spiral
 //! else by frequency and damping, a guess
-//!    oscillation: below 0.6 rad/s phugoid; below 5 rad/s Dutch roll if the damping is below 0.4, else short period;
-//!       below 25 rad/s regressing flap if the damping is above 0.2
+//!    oscillation: below 0.6 rad/s phugoid; below 5 rad/s Dutch roll if the damping is below 0.4,
+//!       else short period; below 25 rad/s regressing flap if the damping is above 0.2
 //!    real: below 0.5 rad/s spiral; 1 to 10 rad/s roll subsidence
 //! ```
 //!
 //! A state's *participation* is its share in a mode. A mode that meets no rule has no name.
 //!
-//! u, v, w are velocities along the body axes, p, q, r the angular rates about them, and phi, theta,
-//! psi the bank, pitch and heading angles.
+//! u, v, w are velocities along the body axes, p, q, r the angular rates about them, and phi,
+//! theta, psi the bank, pitch and heading angles.
 //!
 //! G. D. Padfield, "Helicopter Flight Dynamics", 2nd ed. 2007, 4.3.
 

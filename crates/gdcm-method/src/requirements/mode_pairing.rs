@@ -25,11 +25,14 @@ use gdcm_model::response::Mode;
 
 use crate::fidelity::assignment::cheapest_assignment;
 
-/// Maximum s-plane distance within a pair, relative to the larger modulus.
+/// Maximum s-plane distance within a pair, relative to the larger modulus: real poles in a pair
+/// differ by a factor of two at most. A compromise: a larger value pairs modes of different kinds,
+/// a smaller one leaves modes that the physics model has elsewhere unpaired.
 pub const LARGEST_PAIR_DISTANCE: f64 = 0.5;
-/// Minimum likeness `c` between the shapes in a pair.
+/// Minimum likeness `c` between the shapes in a pair, halfway between orthogonal and equal shapes.
 pub const LEAST_PAIR_LIKENESS: f64 = 0.5;
-/// Cost for a flown mode without a partner: equals the cost of the worst admissible pair.
+/// Cost for a flown mode without a partner: equals the cost of the worst admissible pair, so that a
+/// pair never costs more than leaving its flown mode alone.
 const UNPAIRED_COST: f64 = LARGEST_PAIR_DISTANCE + 1.0 - LEAST_PAIR_LIKENESS;
 /// Cost for an inadmissible pair: exceeds the cost for leaving all modes unpaired.
 const BARRED_COST: f64 = 1e9;
@@ -51,22 +54,18 @@ pub(super) fn single_modes(modes: &[Mode]) -> Vec<usize> {
 }
 
 /// Returns a partner in `model` for each of the [`single_modes`] in `flown` (step 4); `None` if
-/// unpaired. No mode is a partner twice. `least_rad_s` is `omega_min`.
-pub(super) fn mode_pairs(
-    flown: &[Mode],
-    model: &[Mode],
-    least_rad_s: f64,
-) -> Vec<Option<ModePair>> {
+/// unpaired. No mode is a partner twice. `omega_min` is in rad/s.
+pub(super) fn mode_pairs(flown: &[Mode], model: &[Mode], omega_min: f64) -> Vec<Option<ModePair>> {
     let rows = single_modes(flown);
     let columns = single_modes(model);
-    let scales = output_scales(flown, least_rad_s);
+    let scales = output_scales(flown, omega_min);
     // Each flown mode has an additional column, which leaves it unpaired.
     let assigned =
         cheapest_assignment(
             rows.len(),
             columns.len() + rows.len(),
             |row, column| match columns.get(column) {
-                Some(&mode) => pair_cost(&flown[rows[row]], &model[mode], &scales, least_rad_s)
+                Some(&mode) => pair_cost(&flown[rows[row]], &model[mode], &scales, omega_min)
                     .unwrap_or(BARRED_COST),
                 None => UNPAIRED_COST,
             },
@@ -74,7 +73,7 @@ pub(super) fn mode_pairs(
     let mut pairs = Vec::with_capacity(rows.len());
     for (row, column) in assigned.into_iter().enumerate() {
         let pair = columns.get(column).and_then(|&mode| {
-            let cost = pair_cost(&flown[rows[row]], &model[mode], &scales, least_rad_s)?;
+            let cost = pair_cost(&flown[rows[row]], &model[mode], &scales, omega_min)?;
             Some(ModePair { mode, cost })
         });
         pairs.push(pair);
@@ -83,11 +82,11 @@ pub(super) fn mode_pairs(
 }
 
 /// Returns `d + 1 - c` for two modes (step 3); `None` if they cannot be a pair.
-fn pair_cost(flown: &Mode, model: &Mode, scales: &[f64], least_rad_s: f64) -> Option<f64> {
+fn pair_cost(flown: &Mode, model: &Mode, scales: &[f64], omega_min: f64) -> Option<f64> {
     let largest = flown
         .frequency_rad_s
         .max(model.frequency_rad_s)
-        .max(least_rad_s);
+        .max(omega_min);
     let distance = (flown.pole - model.pole).norm() / largest;
     // If a shape is unavailable, only the distance counts.
     let likeness = likeness(flown, model, scales).unwrap_or(LEAST_PAIR_LIKENESS);
@@ -101,13 +100,13 @@ fn pair_cost(flown: &Mode, model: &Mode, scales: &[f64], least_rad_s: f64) -> Op
 
 /// Step 2: returns `s_i` for each output, over all flown poles: both poles in a conjugate pair
 /// count. Zero if no pole has a residue in the output.
-fn output_scales(flown: &[Mode], least_rad_s: f64) -> Vec<f64> {
+fn output_scales(flown: &[Mode], omega_min: f64) -> Vec<f64> {
     let mut squares: Vec<f64> = Vec::new();
     for mode in flown {
         let residues = mode.residues.as_deref().unwrap_or_default();
         squares.resize(squares.len().max(residues.len()), 0.0);
         for (square, residue) in squares.iter_mut().zip(residues) {
-            *square += (residue.norm() / mode.frequency_rad_s.max(least_rad_s)).powi(2);
+            *square += (residue.norm() / mode.frequency_rad_s.max(omega_min)).powi(2);
         }
     }
     squares.into_iter().map(f64::sqrt).collect()
@@ -121,7 +120,7 @@ fn likeness(flown: &Mode, model: &Mode, scales: &[f64]) -> Option<f64> {
     let mut product = Complex::from(0.0);
     let mut flown_square = 0.0;
     let mut model_square = 0.0;
-    let mut is_reached = false;
+    let mut has_output = false;
     for ((flown, model), scale) in flown.iter().zip(model).zip(scales) {
         if *scale > 0.0 {
             let flown = flown / scale;
@@ -129,10 +128,10 @@ fn likeness(flown: &Mode, model: &Mode, scales: &[f64]) -> Option<f64> {
             product += flown.conj() * model;
             flown_square += flown.norm_sqr();
             model_square += model.norm_sqr();
-            is_reached = true;
+            has_output = true;
         }
     }
-    if !is_reached {
+    if !has_output {
         return None;
     }
     let likeness = product.norm_sqr() / (flown_square * model_square);

@@ -25,7 +25,8 @@ pub struct ModeTolerance {
     /// only the latter applies.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub period_s: Option<f64>,
-    /// Tolerance on the time to half or double amplitude, relative to the flown time.
+    /// Tolerance on the time to half or double amplitude ([`ModeValues::time_to_half_s`]), relative
+    /// to the flown time.
     pub amplitude_time: f64,
     /// Absolute tolerance on the damping ratio.
     pub damping_ratio: f64,
@@ -60,13 +61,13 @@ impl ModeTolerance {
     /// Returns whether `model` is within the tolerance around `flown`: the period, and either the
     /// time to half or double amplitude or the damping ratio. A value that either mode lacks is
     /// outside.
-    pub fn holds(&self, flown: &ModeValues, model: &ModeValues) -> bool {
-        self.holds_period(flown.period_s, model.period_s)
-            && (self.holds_amplitude(flown.time_to_half_s, model.time_to_half_s)
-                || self.holds_damping(flown.damping_ratio, model.damping_ratio))
+    pub fn contains(&self, flown: &ModeValues, model: &ModeValues) -> bool {
+        self.contains_period(flown.period_s, model.period_s)
+            && (self.contains_time_to_half(flown.time_to_half_s, model.time_to_half_s)
+                || self.contains_damping(flown.damping_ratio, model.damping_ratio))
     }
 
-    fn holds_period(&self, flown_s: Option<f64>, model_s: Option<f64>) -> bool {
+    fn contains_period(&self, flown_s: Option<f64>, model_s: Option<f64>) -> bool {
         match (flown_s, model_s) {
             (Some(flown_s), Some(model_s)) => {
                 (model_s - flown_s).abs() <= self.period_tolerance_s(flown_s.abs())
@@ -75,7 +76,7 @@ impl ModeTolerance {
         }
     }
 
-    fn holds_amplitude(&self, flown_s: Option<f64>, model_s: Option<f64>) -> bool {
+    fn contains_time_to_half(&self, flown_s: Option<f64>, model_s: Option<f64>) -> bool {
         match (flown_s, model_s) {
             (Some(flown_s), Some(model_s)) => {
                 (model_s - flown_s).abs() <= self.amplitude_time * flown_s.abs()
@@ -84,7 +85,7 @@ impl ModeTolerance {
         }
     }
 
-    fn holds_damping(&self, flown: Option<f64>, model: Option<f64>) -> bool {
+    fn contains_damping(&self, flown: Option<f64>, model: Option<f64>) -> bool {
         match (flown, model) {
             (Some(flown), Some(model)) => (model - flown).abs() <= self.damping_ratio,
             _ => false,
@@ -94,17 +95,17 @@ impl ModeTolerance {
     /// Returns whether flight determines the mode to within the tolerance: the period's standard
     /// deviation is within its tolerance, and so is that of the time to half amplitude or the
     /// damping ratio. A value that the flown mode lacks is not determined.
-    pub fn is_known(&self, flown: &ModeValues, deviation: &ModeValues) -> bool {
-        let period_s = match flown.period_s {
+    pub fn covers_deviation(&self, flown: &ModeValues, deviation: &ModeValues) -> bool {
+        let period_tolerance_s = match flown.period_s {
             Some(period_s) => self.period_tolerance_s(period_s),
             None => 0.0,
         };
-        let amplitude_s = match flown.time_to_half_s {
+        let time_tolerance_s = match flown.time_to_half_s {
             Some(time_s) => self.amplitude_time * time_s.abs(),
             None => 0.0,
         };
-        is_at_most(deviation.period_s, period_s)
-            && (is_at_most(deviation.time_to_half_s, amplitude_s)
+        is_at_most(deviation.period_s, period_tolerance_s)
+            && (is_at_most(deviation.time_to_half_s, time_tolerance_s)
                 || is_at_most(deviation.damping_ratio, self.damping_ratio))
     }
 

@@ -1,11 +1,14 @@
-//! Phase delay from the phase between `omega_180`, where it is -180 deg, and `2 omega_180` (steps 5
-//! to 7 in `bandwidth`, M17.1). `Phi` is the phase of the attitude response, its *chord* the line
-//! between its ends.
+//! Phase delay `tau_p` from the phase `Phi` of the attitude response between `omega_180`, where it
+//! is -180 deg, and `2 omega_180` (M17.1). The *chord* is the straight line between the phase's two
+//! ends.
 //!
 //! ```text
-//! tau_p = -(Phi(2 omega_180) + pi) / (2 omega_180), if the phase Phi departs from its chord by at most 10 deg
-//! tau_p = -1/2 slope of the least-squares line through Phi, otherwise: its phase loss from omega_180 to 2 omega_180, over 2 omega_180
+//! Phi departs from its chord by at most 10 deg:  tau_p = -(Phi(2 omega_180) + pi) / (2 omega_180)
+//! otherwise:  tau_p = -1/2 slope of the least-squares line through Phi over omega
 //! ```
+//!
+//! Both are a phase loss from `omega_180` to `2 omega_180`, that of the chord or of the line,
+//! divided by `2 omega_180`.
 
 use std::f64::consts::PI;
 
@@ -16,13 +19,14 @@ use super::attitude_response::AttitudeResponse;
 
 /// Points used to judge the phase between `omega_180` and `2 omega_180`.
 const LINE_POINTS: usize = 400;
-/// Departure from its chord \[deg\] up to which the phase counts as straight.
+/// Departure from its chord \[deg\] up to which the phase counts as straight. The standard uses the
+/// line where the phase is nonlinear, and gives no number for that; this one is the program's own.
 const STRAIGHT_DEG: f64 = 10.0;
 
 /// The phase from `omega_180` to `2 omega_180`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PhaseLine {
-    /// The phase's maximum departure from the line between its ends \[deg\].
+    /// The phase's maximum departure from its chord \[deg\].
     pub departure_deg: f64,
     /// Phase delay from the two ends \[s\]: `-(Phi(2 omega_180) + pi) / (2 omega_180)`.
     pub two_points_s: f64,
@@ -61,7 +65,7 @@ impl PhaseLine {
     }
 }
 
-/// Returns the maximum distance \[rad\] between a phase and the line through its ends.
+/// Returns the maximum distance \[rad\] between a phase and its chord.
 fn chord_departure(omega: &[f64], phase: &[f64]) -> f64 {
     let last = omega.len() - 1;
     let slope = (phase[last] - phase[0]) / (omega[last] - omega[0]);

@@ -1,8 +1,10 @@
 //! The weighted rms error in time, `J_rms` (M17.4).
 //!
 //! ```text
-//! J_rms = sqrt(1 / (n_t n_o) sum (y - y^)' W (y - y^)),   W = 1 in deg/s, deg, ft/s^2, ft/s: 1 deg counts as 1 ft/s^2
+//! J_rms = sqrt(1 / (n_t n_o) sum (y - y^)^T W (y - y^)),   W = 1 in deg/s, deg, ft/s^2, ft/s
 //! ```
+//!
+//! With these weights, 1 deg counts as much as 1 deg/s and 1 ft/s^2.
 //!
 //! `y` are the flown and `y^` the simulated outputs over `n_t` samples, `n_o` counts the outputs
 //! with a weight.

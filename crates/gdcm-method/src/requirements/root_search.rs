@@ -32,13 +32,13 @@ pub(super) fn root_between([low, high]: [f64; 2], value: impl Fn(f64) -> Option<
         let best = if a.value.abs() < b.value.abs() { a } else { b };
         // The tolerance relative to the bracket width; above 1/2 the bracket is narrower than twice
         // the tolerance.
-        let least = ROOT_TOLERANCE * best.omega / (b.omega - a.omega).abs();
-        if least > 0.5 || best.value == 0.0 || !least.is_finite() {
+        let least_fraction = ROOT_TOLERANCE * best.omega / (b.omega - a.omega).abs();
+        if least_fraction > 0.5 || best.value == 0.0 || !least_fraction.is_finite() {
             return best.omega;
         }
         // Steps 2 and 3
         fraction = if is_monotonic(a, b, c) {
-            quadratic_fraction(a, b, c).clamp(least, 1.0 - least)
+            quadratic_fraction(a, b, c).clamp(least_fraction, 1.0 - least_fraction)
         } else {
             0.5
         };

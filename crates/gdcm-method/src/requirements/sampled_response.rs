@@ -34,8 +34,8 @@ impl SampledResponse {
         let highest = omega[omega.len() - 1];
         let ratio = omega[1] / omega[0];
         let beyond = std::iter::successors(Some(highest * ratio), |omega| Some(omega * ratio));
-        // `1 +`: a sample beyond twice the highest search frequency, so that the interpolation there
-        // has samples on both sides.
+        // `1 +`: a sample beyond twice the highest search frequency, so that the interpolation
+        // there has samples on both sides.
         omega.extend(beyond.take(1 + (2f64.ln() / ratio.ln()).ceil() as usize));
         let values = prepared.at(&omega);
         Self {

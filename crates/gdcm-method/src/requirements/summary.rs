@@ -2,10 +2,13 @@
 //! coefficients, and the share of the band inside the MUAD envelopes.
 //!
 //! ```text
-//! J:      J_mag + J_phase after the correction, averaged over the on-axis responses and over all (M4)
+//! J:      J_mag + J_phase after the correction, averaged over the on-axis responses and over all
+//!         (M4)
 //! J_rms:  weighted rms of y - y^ over all outputs together (rms_cost)
-//! Theil:  rms(y - y^) / (rms y + rms y^) for each output, with rms y and rms y^ about the mean of y (M14.6)
-//! MUAD:   1 - sum ln(b/a) / ln(omega_N/omega_1) over the ranges (a, b) in which the error leaves an envelope
+//! Theil:  rms(y - y^) / (rms y + rms y^) for each output, with rms y and rms y^ about the mean
+//!         of y (M14.6)
+//! MUAD:   1 - sum ln(b/a) / ln(omega_N/omega_1) over the ranges (a, b) in which the error leaves
+//!         an envelope
 //! ```
 //!
 //! MUAD is the maximum unnoticeable added dynamics: envelopes in magnitude and phase inside which

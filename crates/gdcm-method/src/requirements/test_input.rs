@@ -55,7 +55,7 @@ impl TestInputError {
     }
 }
 
-/// Maximum test duration \[s\].
+/// Maximum test duration \[s\], which limits the time and memory of a simulation.
 const LONGEST_S: f64 = 600.0;
 /// Added to each sample number, so that a change at a sample is not missed due to rounding.
 const ROUNDING_SAMPLES: f64 = 1e-6;

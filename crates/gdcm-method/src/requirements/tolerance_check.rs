@@ -1,15 +1,16 @@
 //! Simulated time histories within tolerances around flight (M17.2).
 //!
 //! ```text
-//! 1  attitudes: theta_n = theta_(n-1) + dt (q_(n-1) + q_n) / 2 from the start of the manoeuvre, flown and simulated alike
-//! 2  corridor: w_n = max(absolute, relative |y_n - y_0|), the wider of the two
+//! 1  attitudes: theta_n = theta_(n-1) + dt (q_(n-1) + q_n) / 2 from the start of the manoeuvre,
+//!    flown and simulated alike
+//! 2  corridor: half-width w_n = max(absolute, relative |y_n - y_0|), the wider tolerance
 //! 3  excess: e_n = |y^_n - y_n| - w_n; a sample is inside where e_n <= 0
 //! 4  share inside, maximum e_n and its time; peak error: maximum |y^_n - y_n| / w_n and its time;
 //!    trend: sign of the correlation between y^ and y about their means
 //! ```
 //!
-//! `y` are the flown and `y^` the simulated samples with index n, `dt` apart; `theta` is an attitude
-//! and `q` its rate.
+//! `y` are the flown and `y^` the simulated samples with index n, `dt` apart; `theta` is an
+//! attitude and `q` its rate.
 //!
 //! 14 CFR part 60, appendix C, table C2A. The check is not a qualification: the table's tests are
 //! steps and doublets at given conditions. Integrated body rates are attitudes for small angles
@@ -98,15 +99,15 @@ impl ToleranceCheck {
         let excess: Vec<f64> = excesses(&flown, &simulated, &width).collect();
         // Step 4
         let largest = first_maximum(&excess);
-        let multiples = error_multiples(&flown, &simulated, &width);
-        let peak = first_maximum(&multiples);
+        let relative_errors = relative_errors(&flown, &simulated, &width);
+        let peak = first_maximum(&relative_errors);
         Ok(Self {
             start_s: window.start_s,
             sample_time_s: window.sample_time_s,
             inside: excess.iter().filter(|excess| **excess <= 0.0).count(),
             largest_excess: excess[largest],
             largest_excess_at_s: window.start_s + window.sample_time_s * largest as f64,
-            peak_error: multiples[peak],
+            peak_error: relative_errors[peak],
             peak_error_at_s: window.start_s + window.sample_time_s * peak as f64,
             trend: TrendSums::new(&flown, &simulated),
             flown,
@@ -220,7 +221,7 @@ fn excesses<'a>(
 }
 
 /// Returns `|simulated - flown| / width` at each sample (step 4); widths are above zero.
-fn error_multiples(flown: &[f64], simulated: &[f64], width: &[f64]) -> Vec<f64> {
+fn relative_errors(flown: &[f64], simulated: &[f64], width: &[f64]) -> Vec<f64> {
     flown
         .iter()
         .zip(simulated)

@@ -282,6 +282,8 @@ const DEFAULT_ROWS: [DefaultRow; 9] = [
         relative: None,
         entry: "2.b.3.d, 2.c.3.b",
     },
+    // 2.c.3.b joins the next two rows by "or". They repeat the quantities above with absolute
+    // tolerances only, and are no requirements of their own.
     DefaultRow {
         quantity: "short term: pitch attitude",
         channel: "Q",

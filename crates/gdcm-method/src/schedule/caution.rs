@@ -72,8 +72,8 @@ impl ScheduledCost {
 }
 
 impl ScheduleCaution {
-    /// Returns the only condition that the caution is about; `None` if it is about the schedule, and
-    /// so about every condition.
+    /// Returns the only condition that the caution is about; `None` if it is about the schedule,
+    /// and so about every condition.
     pub fn condition(&self) -> Option<ConditionId> {
         match self {
             ScheduleCaution::CostsMore(cost) => Some(cost.condition),
@@ -84,8 +84,8 @@ impl ScheduleCaution {
         }
     }
 
-    /// Returns whether the caution is about a condition; one without a condition of its own is about
-    /// every condition.
+    /// Returns whether the caution is about a condition; one without a condition of its own is
+    /// about every condition.
     pub fn concerns(&self, condition: ConditionId) -> bool {
         self.condition().is_none_or(|own| own == condition)
     }

@@ -28,7 +28,7 @@ use super::settings::{ScheduleKind, ScheduleSettings, ScheduledQuantity};
 use crate::correction::{ChannelCorrection, Channels, LeadPrice};
 
 /// Number of steps over the airspeed range, or between two clusters, at which a schedule is
-/// inspected.
+/// inspected; fine enough to find the extremes of polynomials of degree 3.
 pub(super) const STEPS: u32 = 100;
 
 /// Every channel's gain (and delay, where requested) as a function of airspeed.
@@ -38,7 +38,7 @@ pub struct Schedule {
     pub airspeeds: Airspeeds,
     /// Each channel's gain, or its logarithm; with a second variable, at its mid-range value.
     pub gains: Channels<Regression>,
-    /// The second variable's contribution to each regression, if any.
+    /// The contribution of the second variable (altitude or mass) to each regression, if any.
     pub second: Option<SecondTerm>,
     /// Delays over airspeed; `None` if they are not scheduled.
     pub delays: Option<DelaySchedule>,
@@ -81,8 +81,8 @@ impl Schedule {
         // Step 2
         let values = regressed_values(points, settings.quantity);
         // Steps 3 and 4
-        let second = fit_second_term(points, &airspeeds, settings, &values)?;
-        let gains = values.map(|channel, values| match &second {
+        let second_term = fit_second_term(points, &airspeeds, settings, &values)?;
+        let gains = values.map(|channel, values| match &second_term {
             Some(SecondTerm { scaled, slopes, .. }) => {
                 let remainder: Vec<f64> = values
                     .iter()
@@ -104,7 +104,7 @@ impl Schedule {
             settings,
             airspeeds,
             gains,
-            second,
+            second: second_term,
             delays,
             leads,
             cautions: Vec::new(),
@@ -162,18 +162,18 @@ impl Schedule {
     /// Evaluates the scheduled correction at a condition's airspeed and second variable; if the
     /// condition does not give this variable, at its mid-range value.
     pub fn at_state(&self, state: &FlightState) -> ChannelCorrection {
-        let second = self
+        let second_value = self
             .settings
             .second
             .and_then(|variable| variable.value(state));
-        self.evaluate(state.airspeed_kt, second)
+        self.evaluate(state.airspeed_kt, second_value)
     }
 
     /// Evaluates the scheduled correction like [`Schedule::at`], but with the second variable at
-    /// `second`, if given; beyond the conditions' range the end value applies.
-    pub fn evaluate(&self, airspeed_kt: f64, second: Option<f64>) -> ChannelCorrection {
+    /// `second_value`, if given; beyond the conditions' range the end value applies.
+    pub fn evaluate(&self, airspeed_kt: f64, second_value: Option<f64>) -> ChannelCorrection {
         let gains = self.gains.map(|channel, regression| {
-            let contribution = match (&self.second, second) {
+            let contribution = match (&self.second, second_value) {
                 (Some(term), Some(value)) => term.slopes[channel] * term.scale(value),
                 _ => 0.0,
             };
@@ -254,12 +254,12 @@ fn fit_second_term(
     let Some(variable) = settings.second else {
         return Ok(None);
     };
-    let mut second = Vec::new();
+    let mut second_values = Vec::new();
     for point in points {
-        second.push(point.second.ok_or(ScheduleError::NoSecondValue(variable))?);
+        second_values.push(point.second.ok_or(ScheduleError::NoSecondValue(variable))?);
     }
-    let columns = design(airspeeds, settings.kind);
-    SecondTerm::fit(variable, second, &columns, values).map(Some)
+    let airspeed_design = design(airspeeds, settings.kind);
+    SecondTerm::fit(variable, second_values, &airspeed_design, values).map(Some)
 }
 
 #[cfg(test)]

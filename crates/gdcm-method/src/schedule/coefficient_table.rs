@@ -1,6 +1,7 @@
-//! A schedule's coefficients or lookup values as a table. The schedule gives each channel's gain
-//! `k` (and delay `τ`, where requested) as a function of the airspeed `V`: a polynomial in the
-//! scaled airspeed `v`, or a lookup table.
+//! A schedule's parameters, row by row for display. The schedule gives each channel's gain `k` (and
+//! delay `τ`, where requested) as a function of the airspeed `V`: a polynomial in the scaled
+//! airspeed `v`, whose parameters are its coefficients, or a lookup table, whose parameters are its
+//! values.
 
 use super::channel_schedule::Schedule;
 use super::lead_schedule::LeadSchedule;
@@ -8,7 +9,7 @@ use super::regression::Regression;
 use super::settings::ScheduledQuantity;
 use crate::correction::{Channel, Channels};
 
-/// Column headings for a polynomial, lowest power first.
+/// Column headings for a polynomial, lowest power first; a schedule's degree is at most 3.
 const POWERS: [&str; 4] = ["1", "v", "v²", "v³"];
 
 /// A channel's coefficients or values.
@@ -17,8 +18,8 @@ pub struct CoefficientRow {
     pub channel: Channel,
     /// Scheduled quantity with its channel: "ln k_LON", "k_Q", "τ_PED \[s\]".
     pub name: String,
-    /// Coefficients or values, one for each column.
-    pub figures: Vec<f64>,
+    /// Coefficients or lookup values, one for each column.
+    pub values: Vec<f64>,
 }
 
 /// Polynomial coefficients in the scaled airspeed, or a lookup table's values (M11).
@@ -28,12 +29,12 @@ pub struct CoefficientTable {
     pub columns: Vec<String>,
     /// The gains of inputs and outputs, then their delays if scheduled.
     pub rows: Vec<CoefficientRow>,
-    /// How `v` is defined: "v = (V − 92.3 kt) / 47.5 kt"; empty for a table.
+    /// How `v` is defined: "v = (V − 92.3 kt) / 47.5 kt"; empty for a lookup table.
     pub scale: String,
 }
 
 impl Schedule {
-    /// Tabulates the coefficients or values with these channel names.
+    /// Lists the coefficients or lookup values with these channel names.
     pub fn coefficients(&self, inputs: &[String], outputs: &[String]) -> CoefficientTable {
         let columns = self.columns();
         let scale = match self.degree() {
@@ -52,7 +53,7 @@ impl Schedule {
             rows.push(CoefficientRow {
                 channel,
                 name: format!("{gain_symbol}_{}", channel.name(inputs, outputs)),
-                figures: self.row_figures(regression, columns.len()),
+                values: self.row_values(regression, columns.len()),
             });
         }
         for taus_s in self.scheduled_delays() {
@@ -60,7 +61,7 @@ impl Schedule {
                 rows.push(CoefficientRow {
                     channel,
                     name: format!("τ_{} [s]", channel.name(inputs, outputs)),
-                    figures: self.row_figures(regression, columns.len()),
+                    values: self.row_values(regression, columns.len()),
                 });
             }
         }
@@ -71,6 +72,7 @@ impl Schedule {
         }
     }
 
+    /// Returns the column headings: powers of `v`, or the clusters' airspeeds.
     fn columns(&self) -> Vec<String> {
         match self.degree() {
             Some(degree) => {
@@ -101,8 +103,8 @@ impl Schedule {
         scheduled
     }
 
-    /// Returns a regression's coefficients or values in the table's columns.
-    fn row_figures(&self, regression: &Regression, columns: usize) -> Vec<f64> {
+    /// Returns a regression's coefficients or lookup values, one for each column.
+    fn row_values(&self, regression: &Regression, columns: usize) -> Vec<f64> {
         match (self.degree(), regression) {
             // Signed delays are a polynomial even where the gains are a lookup table.
             (None, Regression::Polynomial { .. }) => self
@@ -113,9 +115,9 @@ impl Schedule {
                 .collect(),
             // A missing power has the coefficient 0.
             _ => {
-                let mut figures = regression.parameters().to_vec();
-                figures.resize(columns, 0.0);
-                figures
+                let mut values = regression.parameters().to_vec();
+                values.resize(columns, 0.0);
+                values
             }
         }
     }
@@ -149,7 +151,7 @@ mod tests {
             ("1 v v²", "v = (V − 90.00 kt) / 30.00 kt")
         );
         // The parabola passes through its three points, of which the middle one is at v = 0.
-        assert!((table.rows[0].figures[0] - 1.1_f64.ln()).abs() < 1e-15);
+        assert!((table.rows[0].values[0] - 1.1_f64.ln()).abs() < 1e-15);
         let lookup_table = ScheduleSettings {
             kind: ScheduleKind::Table,
             quantity: ScheduledQuantity::Gain,
@@ -161,10 +163,7 @@ mod tests {
             ("60.0 kt 90.0 kt 120.0 kt", "")
         );
         assert_eq!(
-            (
-                table.rows[0].name.as_str(),
-                table.rows[0].figures.as_slice()
-            ),
+            (table.rows[0].name.as_str(), table.rows[0].values.as_slice()),
             ("k_LON", &[1.0, 1.1, 1.3][..])
         );
     }

@@ -6,7 +6,8 @@
 //! 2  leave-one-out error of condition c: the same with the schedule of the other conditions
 //! ```
 //!
-//! `k` is a response's net gain `k_o k_i`, `V` the airspeed.
+//! A *form* ([`ScheduleKind`]) is the kind of function of airspeed that is fitted. `k` is a
+//! response's net gain `k_o k_i`, `V` the airspeed.
 
 use gdcm_model::dataset::{Pair, PairTable};
 
@@ -91,15 +92,16 @@ pub struct FormComparison {
 }
 
 impl FormComparison {
-    /// Returns the fit with a form; `None` if the form was not fitted.
+    /// Returns the fit with the form `kind`; `None` if it was not fitted.
     pub fn form(&self, kind: ScheduleKind) -> Option<&FormFit> {
-        self.fits.iter().find(|form| form.kind == kind)
+        self.fits.iter().find(|fit| fit.kind == kind)
     }
 }
 
 /// Residuals by response under one schedule form.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FormFit {
+    /// The form.
     pub kind: ScheduleKind,
     /// Polynomial degree, possibly less than requested (M11b); `None` for a table.
     pub degree: Option<usize>,

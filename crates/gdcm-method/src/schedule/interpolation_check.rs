@@ -10,7 +10,8 @@ use super::settings::ScheduleKind;
 use crate::correction::Channel;
 
 /// Distance between a gain and the conditions' range that does not count as an overshoot, relative
-/// to the range's width.
+/// to the range's width. A compromise: a smaller share reports harmless extremes of a parabola, a
+/// larger one misses an oscillation.
 const TOLERATED_SHARE: f64 = 0.5;
 /// Relative rounding error that does not count as an overshoot where all gains are equal.
 const ROUNDING: f64 = 1e-9;

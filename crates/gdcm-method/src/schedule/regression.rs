@@ -1,12 +1,12 @@
 //! Regression on airspeed: polynomial or lookup table (M11).
 //!
 //! ```text
-//! polynomial:  f(V) = c_0 + c_1 v + c_2 v^2 + ...,  c by least squares;  v is the scaled airspeed, limited to the conditions' range
-//! table:       the mean in each airspeed cluster, linear between the clusters, constant beyond them
+//! polynomial:  f(V) = c_0 + c_1 v + c_2 v^2 + ...,  c by least squares
+//! table:       the mean in each cluster, linear between the clusters, constant beyond them
 //! ```
 //!
-//! A *cluster* holds conditions at nearly equal airspeeds, which count as one airspeed
-//! (`airspeeds`).
+//! `v` is the airspeed `V`, scaled and limited to the conditions' range. A *cluster* holds
+//! conditions at nearly equal airspeeds, which count as one airspeed (`airspeeds`).
 
 use nalgebra::{DMatrix, DVector};
 

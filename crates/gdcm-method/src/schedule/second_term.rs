@@ -26,7 +26,7 @@ pub struct SecondTerm {
     pub variable: SecondVariable,
     /// Minimum and maximum value over the conditions.
     pub range: [f64; 2],
-    /// Scaled values by condition.
+    /// `z` by condition.
     pub scaled: Vec<f64>,
     /// `gamma` for each channel's gain, or for its logarithm.
     pub slopes: Channels<f64>,
@@ -50,7 +50,7 @@ impl SecondTerm {
         let greatest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let scaled: Vec<f64> = values
             .iter()
-            .map(|value| scaled(*value, [least, greatest]))
+            .map(|value| scale_to_unit(*value, [least, greatest]))
             .collect();
         let rows = airspeed_design.len();
         let columns = airspeed_design.first().map_or(0, Vec::len);
@@ -58,6 +58,7 @@ impl SecondTerm {
             .qr()
             .q();
         let z = DVector::from_column_slice(&scaled);
+        // `z_r`.
         let residual = &z - &q * (q.transpose() * &z);
         // Without a range `z` is NaN, which the first comparison covers.
         if greatest <= least || residual.norm() <= DEPENDENT * z.norm() {
@@ -76,7 +77,7 @@ impl SecondTerm {
 
     /// Scales a value to -1 to 1; beyond the conditions' range the scaled value is -1 or 1.
     pub fn scale(&self, value: f64) -> f64 {
-        scaled(value.clamp(self.range[0], self.range[1]), self.range)
+        scale_to_unit(value.clamp(self.range[0], self.range[1]), self.range)
     }
 
     /// Returns the middle of the conditions' range.
@@ -91,7 +92,7 @@ impl SecondTerm {
 }
 
 /// Maps `value` linearly, so that the range becomes -1 to 1.
-fn scaled(value: f64, [least, greatest]: [f64; 2]) -> f64 {
+fn scale_to_unit(value: f64, [least, greatest]: [f64; 2]) -> f64 {
     (2.0 * value - least - greatest) / (greatest - least)
 }
 

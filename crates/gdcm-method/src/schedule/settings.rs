@@ -14,7 +14,7 @@ pub const HIGHEST_DEGREE: usize = 3;
 /// Default cluster tolerance \[kt\] (M11b).
 pub const DEFAULT_TOLERANCE_KT: f64 = 2.0;
 
-/// Schedule form.
+/// Form of a schedule: the kind of function of airspeed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ScheduleKind {
     /// Polynomial by least squares.
@@ -42,9 +42,10 @@ pub enum ScheduledQuantity {
 pub struct ScheduleSettings {
     pub kind: ScheduleKind,
     pub quantity: ScheduledQuantity,
-    /// Whether this schedule includes delays, as determined by [`DelayScheduling`](super::delay_scheduling::DelayScheduling) for its
-    /// conditions. Older program versions read this field from study settings; there it is `true`
-    /// only if delays are always scheduled.
+    /// Whether this schedule includes delays, as determined by
+    /// [`DelayScheduling`](super::delay_scheduling::DelayScheduling) for its conditions. Older
+    /// program versions read this field from study settings; there it is `true` only if delays are
+    /// always scheduled.
     pub delays: bool,
     /// Polynomial degree for signed delays, 0 to [`HIGHEST_DEGREE`]; 0 by default, because servo,
     /// sensor and computing lags do not depend on airspeed (M15.5).
@@ -58,7 +59,7 @@ pub struct ScheduleSettings {
 /// [`ScheduleSettings`] in files, where the degree is a field beside the form.
 #[derive(Serialize, Deserialize)]
 struct ScheduleEntry {
-    kind: FormEntry,
+    kind: KindEntry,
     #[serde(default, deserialize_with = "whole_or_none")]
     degree: Option<usize>,
     #[serde(rename = "of")]
@@ -72,9 +73,10 @@ struct ScheduleEntry {
     tau_degree: usize,
 }
 
+/// [`ScheduleKind`] in files, without its degree.
 #[derive(Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-enum FormEntry {
+enum KindEntry {
     Polynomial,
     Table,
 }
@@ -103,18 +105,18 @@ impl TryFrom<ScheduleEntry> for ScheduleSettings {
 }
 
 impl ScheduleEntry {
-    /// Combines form and degree into a schedule kind.
+    /// Combines the kind and the degree, separate fields in files.
     fn schedule_kind(&self) -> Result<ScheduleKind, String> {
         match (&self.kind, self.degree) {
-            (FormEntry::Table, _) => Ok(ScheduleKind::Table),
-            (FormEntry::Polynomial, Some(degree)) if degree <= HIGHEST_DEGREE => {
+            (KindEntry::Table, _) => Ok(ScheduleKind::Table),
+            (KindEntry::Polynomial, Some(degree)) if degree <= HIGHEST_DEGREE => {
                 Ok(ScheduleKind::Polynomial { degree })
             }
-            (FormEntry::Polynomial, Some(degree)) => Err(format!(
+            (KindEntry::Polynomial, Some(degree)) => Err(format!(
                 "degree: expected a whole number from 0 to {HIGHEST_DEGREE}, found {degree}"
             )),
             // Worded like serde's own error, so that readers treat both alike.
-            (FormEntry::Polynomial, None) => Err("missing field `degree`".to_owned()),
+            (KindEntry::Polynomial, None) => Err("missing field `degree`".to_owned()),
         }
     }
 }
@@ -122,8 +124,8 @@ impl ScheduleEntry {
 impl From<ScheduleSettings> for ScheduleEntry {
     fn from(settings: ScheduleSettings) -> Self {
         let (kind, degree) = match settings.kind {
-            ScheduleKind::Polynomial { degree } => (FormEntry::Polynomial, Some(degree)),
-            ScheduleKind::Table => (FormEntry::Table, None),
+            ScheduleKind::Polynomial { degree } => (KindEntry::Polynomial, Some(degree)),
+            ScheduleKind::Table => (KindEntry::Table, None),
         };
         Self {
             kind,

@@ -1,15 +1,18 @@
 //! Error bar for a value (M13.3).
 //!
 //! ```text
-//! whole bar: q_0 +- t(nu) u,   u^2 = s_phys^2 + s_id^2,   nu by Satterthwaite's formula (variance_component)
+//! whole bar: q_0 +- t(nu) u,   u^2 = s_phys^2 + s_id^2,   nu by Satterthwaite's formula
 //! inner bar: q_0 +- t(nu_id) s_id
 //! ```
 //!
 //! A *representative* is the model that stands for a condition's physics or identified models.
-//! `q_0` is the value with both representatives, `s_phys` and `s_id` are the standard deviations
-//! due to the unknown trim and the identification, found by *substitution*: another accepted model
-//! takes the place of a representative. `nu_id` are the degrees of freedom of `s_id`, and `t` is
-//! Student's quantile at the confidence level.
+//! `q_0` is the value with both representatives. `s_phys` and `s_id` are the standard deviations
+//! due to the unknown trim and the identification, the bar's *parts*; they are found by
+//! *substitution*: another accepted model takes the place of a representative. `nu_id` are the
+//! degrees of freedom of `s_id`, and `t` is Student's quantile at the confidence level.
+//!
+//! A bar has *no spread* if no part has a positive variance, because a part is missing or all
+//! models give the same value; it then has no width.
 
 use super::distributions::student_quantile;
 use super::variance_component::{VarianceComponent, satterthwaite};
@@ -22,7 +25,8 @@ pub enum IdentificationSource {
     /// The measured response's coherence; the resulting standard error replaces a smaller or
     /// missing spread.
     Coherence,
-    /// The identified model's confidence band, which replaces a smaller or missing spread.
+    /// The standard deviations that the identified model carries over frequency, which replace a
+    /// smaller or missing spread.
     ModelBand,
 }
 
@@ -35,7 +39,7 @@ pub struct Bar {
     /// yields a value.
     pub trim: Option<VarianceComponent>,
     /// Variance from the identification, `s_id^2`; `None` if there is neither a spread, own or
-    /// borrowed from other conditions, nor a standard error from coherence or a model's band.
+    /// borrowed from other conditions, nor a standard error from coherence or from the model.
     pub identification: Option<VarianceComponent>,
     pub source: IdentificationSource,
     /// Count of substitutions for which the value does not exist.
@@ -55,13 +59,12 @@ impl Bar {
         self.variance().sqrt()
     }
 
-    /// Iterates over the available variance components.
+    /// Iterates over the variances of the available parts.
     pub fn parts(&self) -> impl Iterator<Item = VarianceComponent> + use<> {
         [self.trim, self.identification].into_iter().flatten()
     }
 
-    /// Returns the degrees of freedom of `u`; `None` without spread, if no part has a positive
-    /// variance.
+    /// Returns the degrees of freedom of `u`; `None` without spread.
     pub fn degrees_of_freedom(&self) -> Option<f64> {
         satterthwaite(self.parts())
     }

@@ -13,7 +13,8 @@ pub struct Measurement {
     pub averages: f64,
     /// Window length \[s\], `T_w`. `None` if unknown: all frequencies then have a common error.
     pub window_s: Option<f64>,
-    /// `C_epsilon`: 1, or `sqrt(0.55)` for windows that overlap by half.
+    /// `C_epsilon`: 1, or `sqrt(0.55)` for windows that overlap by half, which reduces the error
+    /// (Bendat and Piersol).
     pub factor: f64,
 }
 
@@ -40,10 +41,17 @@ impl Measurement {
         self.factor * ((1.0 - coherence) / (coherence * 2.0 * self.averages)).sqrt()
     }
 
-    /// Computes the factor by which averaging over frequency reduces the error, `kappa =
-    /// sqrt(min(1, (pi/2) sum f_j^2))`. `f_j` is the share of frequencies \[rad/s\] with
-    /// `floor(omega T_w / (4 pi)) = j`: frequencies closer than `4 pi / T_w` have a common error.
-    fn averaging(&self, omega: &[f64]) -> f64 {
+    /// Computes `kappa`, the factor by which the median over the ascending frequencies `omega`
+    /// \[rad/s\] reduces the error; 1 without a window length.
+    ///
+    /// ```text
+    /// kappa = sqrt(min(1, (pi/2) sum_j f_j^2)),   f_j: share of the frequencies in cell j
+    /// ```
+    ///
+    /// A cell is `4 pi / T_w` wide, two frequency steps of the window; the frequencies in it have a
+    /// common error. The mean over cells with independent errors has the relative variance
+    /// `sum_j f_j^2`, and the median of normal errors `pi/2` times that of the mean.
+    fn frequency_averaging(&self, omega: &[f64]) -> f64 {
         let Some(window_s) = self.window_s else {
             return 1.0;
         };
@@ -53,8 +61,8 @@ impl Measurement {
             .collect();
         let sum: f64 = cells
             .chunk_by(|a, b| a == b)
-            .map(|chunk| {
-                let share = chunk.len() as f64 / omega.len() as f64;
+            .map(|cell| {
+                let share = cell.len() as f64 / omega.len() as f64;
                 share * share
             })
             .sum();
@@ -71,13 +79,13 @@ impl Measurement {
         coherence: &[f64],
         threshold: f64,
     ) -> Option<CoherenceError> {
-        let mut used = Vec::new();
+        let mut used_omega = Vec::new();
         let mut gain_errors = Vec::new();
         let mut delay_errors = Vec::new();
         for (omega, &coherence) in omega.iter().zip(coherence) {
             if coherence > 0.0 && coherence >= threshold {
                 let deviation = self.deviation(coherence);
-                used.push(*omega);
+                used_omega.push(*omega);
                 gain_errors.push(deviation);
                 delay_errors.push(deviation / *omega);
             }
@@ -85,7 +93,7 @@ impl Measurement {
         if gain_errors.is_empty() || self.averages.is_nan() || self.averages <= 0.0 {
             return None;
         }
-        let kappa = self.averaging(&used);
+        let kappa = self.frequency_averaging(&used_omega);
         Some(CoherenceError {
             ln_gain: kappa * median(&mut gain_errors),
             delay_s: kappa * median(&mut delay_errors),

@@ -2,13 +2,14 @@
 //! gain's logarithm or a delay, of a response or of a channel (`scalar`).
 //!
 //! ```text
-//! s_phys^2, s_own^2 <- mean square changes if other models are substituted (spread)
-//! s_id^2            <- s_own^2 pooled with the other conditions (variance_component), or the reported s^2 if that is larger
+//! 1  s_phys^2, s_own^2 <- mean square changes if other models are substituted     (`spread`)
+//! 2  s_id^2 <- s_own^2 pooled with the other conditions              (`variance_component`)
+//! 3  s_id^2 <- the reported s^2, if that is larger, or if there is no s_id^2
 //! ```
 //!
 //! `s_phys` is the standard deviation due to the physics models' trim, `s_id` that due to the
-//! identification; the reported `s` comes from the identified representative's own confidence band
-//! or coherence.
+//! identification; the reported `s` comes from the identified representative's own standard
+//! deviations over frequency, or from its coherence.
 
 use super::bar::{Bar, IdentificationSource};
 use super::scalar::{Figures, Scalar, ScalarTable};
@@ -18,7 +19,7 @@ use super::variance_component::{VarianceComponent, pooled};
 /// A condition's data from which its bars are computed.
 #[derive(Clone, Debug)]
 pub struct BarSource<'a> {
-    /// Scalars with both representatives.
+    /// Values of the scalars with both representatives.
     pub figures: Figures,
     /// Changes in the scalars if other models are substituted.
     pub spread: &'a ConditionSpread,
@@ -34,7 +35,8 @@ pub fn bars(conditions: &[BarSource<'_>], prior_degrees: f64) -> Vec<ScalarTable
     let Some(first) = conditions.first() else {
         return Vec::new();
     };
-    let identification = first.figures.map(|scalar, _| {
+    // Step 2: for each scalar, the pooled variance by condition.
+    let pooled_variances = first.figures.map(|scalar, _| {
         let own: Vec<Option<VarianceComponent>> = conditions
             .iter()
             .map(|condition| condition.spread.changes[scalar].own)
@@ -44,20 +46,20 @@ pub fn bars(conditions: &[BarSource<'_>], prior_degrees: f64) -> Vec<ScalarTable
     let mut bars = Vec::with_capacity(conditions.len());
     for (index, condition) in conditions.iter().enumerate() {
         bars.push(condition.figures.map(|scalar, value| {
-            let spread = identification[scalar][index];
-            Some(condition.bar(scalar, (*value)?, spread))
+            let pooled_variance = pooled_variances[scalar][index];
+            Some(condition.bar(scalar, (*value)?, pooled_variance))
         }));
     }
     bars
 }
 
 impl BarSource<'_> {
-    /// Returns a scalar's bar with the pooled identification part `spread`.
-    fn bar(&self, scalar: Scalar, value: f64, spread: Option<VarianceComponent>) -> Bar {
+    /// Returns a scalar's bar with the identification variance `pooled` (step 3).
+    fn bar(&self, scalar: Scalar, value: f64, pooled: Option<VarianceComponent>) -> Bar {
         let changes = self.spread.changes[scalar];
         let (identification, source) = match self.reported[scalar] {
-            Some(reported) if reported.replaces(spread) => (Some(reported.part), reported.source),
-            _ => (spread, IdentificationSource::Spread),
+            Some(reported) if reported.replaces(pooled) => (Some(reported.part), reported.source),
+            _ => (pooled, IdentificationSource::Spread),
         };
         let range = match scalar {
             Scalar::ChannelDelay(_) => self.delay_bounds_s,
@@ -74,21 +76,22 @@ impl BarSource<'_> {
     }
 }
 
-/// An identified representative's standard error, from its confidence band or its coherence.
+/// An identified representative's standard error, from the standard deviations that it carries over
+/// frequency, or from its coherence.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReportedUncertainty {
     pub part: VarianceComponent,
-    /// Source of the standard error: coherence or confidence band.
+    /// Source of the standard error.
     pub source: IdentificationSource,
 }
 
 impl ReportedUncertainty {
-    /// Returns whether the standard error replaces the spread: if it is larger, or if there is no
-    /// spread. The spread between leave-one-record-out models underestimates a single model's error
-    /// by a factor of about the square root of the record count (Efron's jackknife); the standard
-    /// error does not.
-    fn replaces(&self, spread: Option<VarianceComponent>) -> bool {
-        spread.is_none_or(|spread| self.part.variance > spread.variance)
+    /// Returns whether the standard error replaces the pooled spread: if it is larger, or if there
+    /// is no spread. The spread between leave-one-record-out models underestimates a single model's
+    /// error by a factor of about the square root of the record count (Efron's jackknife); the
+    /// standard error does not.
+    fn replaces(&self, pooled: Option<VarianceComponent>) -> bool {
+        pooled.is_none_or(|pooled| self.part.variance > pooled.variance)
     }
 }
 

@@ -1,7 +1,8 @@
 //! Significance of differences between two conditions (M13.4).
 //!
 //! ```text
-//! ratio <- |delta| / u_delta,   delta = q_c - q_c',   u_delta = sqrt(u_c^2 + u_c'^2);   p from Student's distribution
+//! ratio <- |delta| / u_delta,   delta = q_c - q_c',   u_delta = sqrt(u_c^2 + u_c'^2)
+//! p     <- two-sided probability of this ratio in Student's distribution
 //! ```
 //!
 //! `q_c` and `u_c` are the value and the standard deviation in a condition's error bar. Over

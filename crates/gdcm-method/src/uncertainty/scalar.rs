@@ -8,7 +8,7 @@ use gdcm_model::dataset::Pair;
 
 use crate::correction::Channel;
 
-/// A condition's scalars; `None` if a scalar does not exist.
+/// The values of a condition's scalars; `None` for a scalar that does not exist.
 pub type Figures = ScalarTable<Option<f64>>;
 
 /// A condition's scalar result, `q` in M13.

@@ -2,18 +2,20 @@
 //!
 //! ```text
 //! 1  fit X and (X z): the schedule's columns without and with the variable, scaled to -1 <= z <= 1
-//! 2  effect <- 2 gamma, gamma the coefficient of z;  p <- Student's test of gamma / se, se its standard error
-//! 3  needed: p, after Holm's correction, below 1 - level, and the rms leave-one-out error falls by 10 % or more
+//! 2  effect <- 2 gamma, gamma the coefficient of z;  p <- Student's test of gamma / se, se its
+//!    standard error
+//! 3  needed: p, after Holm's correction for several tests, is below 1 - level, and the rms
+//!    leave-one-out error falls by 10 % or more
 //! ```
 //!
-//! The second variable is altitude or mass; `level` is the confidence level. Holm's correction is
-//! over several tests.
+//! The second variable is altitude or mass; `level` is the confidence level.
 
 use super::design::{Design, sum_of_squares};
 use super::distributions::{student_quantile, student_two_sided};
 
 /// Maximum ratio between the leave-one-out errors with and without a variable at which the variable
-/// counts as needed.
+/// counts as needed: a significant effect that predicts omitted conditions hardly better is not
+/// worth another variable in the schedule.
 const NOTABLE_RATIO: f64 = 0.9;
 
 /// Designs without and with a second variable.
@@ -58,7 +60,7 @@ impl SecondVariableDesign {
         let left_out = self.left_out_errors(values);
         SecondVariableEffect {
             effect: 2.0 * coefficient,
-            visible: 2.0 * student_quantile(level, freedom) * error,
+            detectable: 2.0 * student_quantile(level, freedom) * error,
             p: student_two_sided(ratio, freedom),
             left_out_without: rms(&left_out.without),
             left_out_with: rms(&left_out.with),
@@ -98,7 +100,7 @@ pub struct SecondVariableEffect {
     pub effect: f64,
     /// Half-width of the confidence interval for `effect`, `2 t se`; smaller effects are not
     /// detectable.
-    pub visible: f64,
+    pub detectable: f64,
     /// Probability that an effect this large arises without a true effect, before Holm's
     /// correction.
     pub p: f64,

@@ -4,13 +4,19 @@ use serde::{Deserialize, Serialize};
 
 use super::coherence_error::Measurement;
 
+/// `C_epsilon^2` for windows that overlap by half (J. S. Bendat and A. G. Piersol, *Random Data*,
+/// 4th ed. 2010, chapter 9).
+const HALF_OVERLAP_FACTOR: f64 = 0.55;
+
 /// Settings for the error bars; no gain and no delay depends on them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct UncertaintySettings {
     /// Confidence level `L` for every bar, interval and test.
     pub level: f64,
     /// Maximum degrees of freedom that the identification part in a condition's error bar borrows
-    /// from the other conditions; 0 uses the condition's own data only.
+    /// from the other conditions; 0 uses the condition's own data only. With 4, Student's quantile
+    /// for three identified models is 1.9 instead of 2.9, so that the bars are a quarter narrower
+    /// (`docs/uncertainty.md`).
     pub prior_degrees: f64,
     /// Count of independent averages for measured responses whose files do not state it; `None`
     /// leaves their coherence unused.
@@ -48,7 +54,7 @@ impl UncertaintySettings {
             .or(self.window_s)
             .filter(|window_s| *window_s > 0.0);
         let factor = if self.half_overlap {
-            0.55_f64.sqrt()
+            HALF_OVERLAP_FACTOR.sqrt()
         } else {
             1.0
         };

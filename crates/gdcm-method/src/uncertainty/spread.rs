@@ -1,11 +1,12 @@
 //! Changes in a condition's values if its models are substituted (M13.1).
 //!
 //! ```text
-//! s_phys^2 <- mean of (q - q_0)^2 over the other accepted physics models, each instead of the representative
+//! s_phys^2 <- mean of (q - q_0)^2 over the other accepted physics models
 //! s_own^2  <- the same over the other accepted identified models
 //! ```
 //!
-//! `q` is one of the condition's scalars, `q_0` its value with both representatives.
+//! `q_0` is a scalar's value with the physics and the identified representative, `q` its value with
+//! another model instead of a representative: a *substitution*.
 
 use super::scalar::{Figures, Scalar, ScalarTable};
 use super::variance_component::VarianceComponent;
@@ -29,37 +30,37 @@ pub struct ConditionSpread {
 }
 
 impl ConditionSpread {
-    /// Computes the mean squares about the representatives' scalars. `trim` has an entry for each
-    /// other accepted physics model, `own` for each other accepted identified model; `None` if the
-    /// analysis with that model failed.
+    /// Computes the mean squares about the values with both representatives. `with_other_physics`
+    /// has the values with each other accepted physics model, `with_other_identified` with each
+    /// other accepted identified model; `None` if the analysis with that model failed.
     pub fn new(
         representatives: &Figures,
-        trim: &[Option<&Figures>],
-        own: &[Option<&Figures>],
+        with_other_physics: &[Option<&Figures>],
+        with_other_identified: &[Option<&Figures>],
     ) -> Self {
-        let changes = representatives.map(|scalar, base| {
-            let Some(base) = base else {
+        let substitutions = with_other_physics.len() + with_other_identified.len();
+        let changes = representatives.map(|scalar, q_0| {
+            let Some(q_0) = q_0 else {
                 return Changes::default();
             };
-            let by_trim = changes_from(*base, scalar, trim);
-            let by_own = changes_from(*base, scalar, own);
-            let left_out = trim.len() + own.len() - by_trim.len() - by_own.len();
+            let physics_changes = changes_from(*q_0, scalar, with_other_physics);
+            let identified_changes = changes_from(*q_0, scalar, with_other_identified);
             Changes {
-                trim: VarianceComponent::from_changes(&by_trim),
-                own: VarianceComponent::from_changes(&by_own),
-                left_out,
+                trim: VarianceComponent::from_changes(&physics_changes),
+                own: VarianceComponent::from_changes(&identified_changes),
+                left_out: substitutions - physics_changes.len() - identified_changes.len(),
             }
         });
         Self { changes }
     }
 }
 
-/// Returns a scalar's changes from `base` in the substitutions for which it exists.
-fn changes_from(base: f64, scalar: Scalar, swaps: &[Option<&Figures>]) -> Vec<f64> {
+/// Returns `q - q_0` for a scalar in the substitutions for which it exists.
+fn changes_from(q_0: f64, scalar: Scalar, substitutions: &[Option<&Figures>]) -> Vec<f64> {
     let mut changes = Vec::new();
-    for figures in swaps.iter().flatten() {
-        if let Some(value) = figures[scalar] {
-            changes.push(value - base);
+    for values in substitutions.iter().flatten() {
+        if let Some(q) = values[scalar] {
+            changes.push(q - q_0);
         }
     }
     changes

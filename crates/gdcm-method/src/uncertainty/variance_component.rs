@@ -65,13 +65,13 @@ pub fn satterthwaite(parts: impl IntoIterator<Item = VarianceComponent>) -> Opti
     // Scaled by the largest variance, because small variances underflow when squared.
     let greatest = parts.iter().map(|part| part.variance).fold(0.0, f64::max);
     let mut sum = 0.0;
-    let mut spread = 0.0;
+    let mut sum_of_squares_over_nu = 0.0;
     for part in &parts {
-        let share = part.variance / greatest;
-        sum += share;
-        spread += share * share / part.degrees_of_freedom;
+        let scaled = part.variance / greatest;
+        sum += scaled;
+        sum_of_squares_over_nu += scaled * scaled / part.degrees_of_freedom;
     }
-    Some(sum * sum / spread)
+    Some(sum * sum / sum_of_squares_over_nu)
 }
 
 /// Pools each condition's identification variance with that of the other conditions (M13.2).
@@ -90,8 +90,9 @@ pub fn pooled(
     prior_degrees: f64,
 ) -> Vec<Option<VarianceComponent>> {
     let known = own.iter().flatten();
-    let count: f64 = known.clone().map(|part| part.degrees_of_freedom).sum();
-    let square: f64 = known
+    // sum n and sum n s_own^2.
+    let total_degrees: f64 = known.clone().map(|part| part.degrees_of_freedom).sum();
+    let total_square: f64 = known
         .map(|part| part.degrees_of_freedom * part.variance)
         .sum();
     let mut identification = Vec::with_capacity(own.len());
@@ -100,12 +101,13 @@ pub fn pooled(
             Some(component) => (component.degrees_of_freedom, component.variance),
             None => (0.0, 0.0),
         };
-        let borrowed = prior_degrees.min(count - n);
+        // `d_0`.
+        let borrowed = prior_degrees.min(total_degrees - n);
         let degrees = n + borrowed;
         // A condition with a single model has no estimate if nothing is borrowed from the others.
-        identification.push(if count > 0.0 && degrees > 0.0 {
+        identification.push(if total_degrees > 0.0 && degrees > 0.0 {
             Some(VarianceComponent {
-                variance: (n * own_variance + borrowed * square / count) / degrees,
+                variance: (n * own_variance + borrowed * total_square / total_degrees) / degrees,
                 degrees_of_freedom: degrees,
             })
         } else {

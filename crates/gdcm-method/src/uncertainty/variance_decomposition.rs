@@ -1,10 +1,12 @@
-//! Splits the scatter about a schedule into the parts that the bundles explain, and the rest
-//! (M13.5).
+//! Splits the scatter about a schedule into the parts that the bundles explain, and the unexplained
+//! part (M13.5).
 //!
 //! ```text
-//! S^2    <- sum e_c^2 / f                     residual variance about the fit, f = n - r
-//! B_phys <- sum (1 - h_c) s_phys,c^2 / f,     B_id <- sum (1 - h_c) s_id,c^2 / f,     B = B_phys + B_id
-//! rest^2 <- max(0, S^2 - B)
+//! S^2    <- sum e_c^2 / f                    scatter: residual variance, f = n - r
+//! B_phys <- sum (1 - h_c) s_phys,c^2 / f     explained by the trim
+//! B_id   <- sum (1 - h_c) s_id,c^2 / f       explained by the identification
+//! B      <- B_phys + B_id
+//! unexplained^2 <- max(0, S^2 - B)
 //! ```
 //!
 //! The *bundles* are the conditions' physics models, whose spread shows the effect of the unknown
@@ -18,16 +20,16 @@ use super::design::{Design, sum_of_squares};
 use super::distributions::{chi_squared_quantile, fisher_upper};
 use super::variance_component::{VarianceComponent, satterthwaite};
 
-/// Scatter about a fit, split into the parts expected from the bundles and the rest.
+/// Scatter about a fit, split into the parts that the bundles explain and the unexplained part.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VarianceDecomposition {
     /// Degrees of freedom of the scatter, `f = n - r`.
     pub freedom: usize,
     /// Residual variance `S^2 = sum e^2 / f`.
     pub scatter: f64,
-    /// `B_phys`, expected from the unknown trims.
+    /// `B_phys`, explained by the unknown trims.
     pub trim: f64,
-    /// `B_id`, expected from the identification.
+    /// `B_id`, explained by the identification.
     pub identification: f64,
     /// Degrees of freedom of `B`; `None` if the bundles have no spread.
     pub degrees_of_freedom: Option<f64>,
@@ -64,13 +66,13 @@ impl VarianceDecomposition {
         self.trim + self.identification
     }
 
-    /// Returns `rest^2 = max(0, S^2 - B)`, the variance that neither bundle explains.
+    /// Returns `max(0, S^2 - B)`, the variance that neither bundle explains.
     pub fn unexplained(&self) -> f64 {
         (self.scatter - self.explained()).max(0.0)
     }
 
-    /// Returns the shares of trim, identification and rest in `max(S^2, B)`; `None` without scatter
-    /// and spread.
+    /// Returns the shares of trim, identification and unexplained part in `max(S^2, B)`; `None`
+    /// without scatter and spread.
     pub fn shares(&self) -> Option<[f64; 3]> {
         let whole = self.scatter.max(self.explained());
         if whole > 0.0 {
@@ -80,7 +82,7 @@ impl VarianceDecomposition {
         }
     }
 
-    /// Returns `sqrt(S^2 / B)`, the scatter over the expected scatter; `None` without spread.
+    /// Returns `sqrt(S^2 / B)`, the scatter over the explained scatter; `None` without spread.
     pub fn ratio(&self) -> Option<f64> {
         self.degrees_of_freedom?;
         Some((self.scatter / self.explained()).sqrt())
@@ -96,7 +98,7 @@ impl VarianceDecomposition {
         )
     }
 
-    /// Returns the confidence interval for `rest`, the unexplained standard deviation.
+    /// Returns the confidence interval for the unexplained standard deviation.
     pub fn unexplained_interval(&self, level: f64) -> Option<[f64; 2]> {
         Some([
             self.unexplained_limit(0.5 * (1.0 + level))?,

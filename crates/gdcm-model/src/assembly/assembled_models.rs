@@ -28,8 +28,8 @@ use crate::names::RowRole;
 use crate::number_format::number;
 
 /// Builds a physics model, also one with moved parameters. `coordinates` are those in which the
-/// trim of any of the condition's physics models is perturbed; where this model states no offset, it
-/// is 0.
+/// trim of any of the condition's physics models is perturbed; where this model states no offset,
+/// it is 0.
 pub(super) fn physics_model(part: &Part, coordinates: &BTreeSet<&String>) -> ModelDraft {
     let mut offsets = BTreeMap::new();
     for coordinate in coordinates {

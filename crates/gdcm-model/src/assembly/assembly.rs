@@ -1,4 +1,5 @@
-//! Models found in files, with the engineer's rules applied to them: the entry point of this folder.
+//! Models found in files, with the engineer's rules applied to them: the entry point of this
+//! folder.
 //!
 //! The problems are described in `problem_lines.rs`, the cautions in `position_caution.rs`.
 //!

@@ -66,38 +66,38 @@ impl ChannelMatcher<'_> {
     /// 5. Note the named file channels that no dataset channel uses.
     /// 6. Report a problem if a measured response has none of the dataset's channels.
     ///
-    /// Two dataset channels that agree with the same file channel both use it.
+    /// Two dataset channels that match the same file channel both use it.
     pub(super) fn run(self) -> ChannelMatch {
-        let mut found = ChannelMatch {
+        let mut matched = ChannelMatch {
             by_position: !self.labels.is_empty()
                 && self.labels.iter().all(|label| label.name.is_none()),
             ..ChannelMatch::default()
         };
         // Step 1.
-        if found.by_position && self.labels.len() != self.rules.len() {
+        if matched.by_position && self.labels.len() != self.rules.len() {
             return self.wrong_count();
         }
-        for (place, rule) in self.rules.iter().enumerate() {
+        for (position, rule) in self.rules.iter().enumerate() {
             // Steps 1 and 2.
-            let index = if found.by_position {
-                Some(place)
+            let index = if matched.by_position {
+                Some(position)
             } else {
-                self.find(rule, &mut found.problems)
+                self.find(rule, &mut matched.problems)
             };
             // Steps 3 and 4.
             let used = index.map(|index| {
-                let used = self.converted(index, rule, &mut found);
-                self.signed(used, rule, &mut found.problems)
+                let used = self.converted(index, rule, &mut matched);
+                self.signed(used, rule, &mut matched.problems)
             });
-            found.uses.push(used);
+            matched.uses.push(used);
         }
         // Step 5.
-        self.note_unused(&mut found);
+        self.note_unused(&mut matched);
         // Step 6.
-        if self.partial && found.problems.is_empty() && found.uses.iter().all(Option::is_none) {
-            found.problems.push(self.unmatched());
+        if self.partial && matched.problems.is_empty() && matched.uses.iter().all(Option::is_none) {
+            matched.problems.push(self.unmatched());
         }
-        found
+        matched
     }
 
     /// Returns the result for unnamed channels whose count differs from the dataset's.
@@ -146,7 +146,8 @@ impl ChannelMatcher<'_> {
         }
     }
 
-    /// Returns the file channels with the closest agreement in name; empty if no name agrees.
+    /// Returns the file channels with the closest likeness in name; empty if no name is like the
+    /// channel's.
     fn candidates(&self, rule: &ChannelRule) -> Vec<usize> {
         for likeness in Likeness::CLOSEST_FIRST {
             let mut candidates = Vec::new();
@@ -184,7 +185,12 @@ impl ChannelMatcher<'_> {
     ///    differ), or else the rule's unit for files; a problem without any.
     /// 3. The factor from this unit to the dataset's: the declared conversion for these units, or
     ///    else the factor between physical units; a problem without any.
-    fn converted(&self, index: usize, rule: &ChannelRule, found: &mut ChannelMatch) -> ChannelUse {
+    fn converted(
+        &self,
+        index: usize,
+        rule: &ChannelRule,
+        matched: &mut ChannelMatch,
+    ) -> ChannelUse {
         let mut used = ChannelUse {
             index,
             factor: 1.0,
@@ -204,7 +210,7 @@ impl ChannelMatcher<'_> {
             && let Some(file_unit) = file_unit
             && declared_unit != file_unit
         {
-            found.notes.push(ChannelNote::UnitReplaced {
+            matched.notes.push(ChannelNote::UnitReplaced {
                 channel: rule.name.clone(),
                 declared: declared_unit.clone(),
                 found: file_unit.clone(),
@@ -212,7 +218,7 @@ impl ChannelMatcher<'_> {
         }
         let unit = declared_unit.or(file_unit).or(rule.unit_in_files.as_ref());
         let Some(unit) = unit else {
-            found
+            matched
                 .problems
                 .push(ProblemKind::UnitOfFile(rule.name.clone()));
             return used;
@@ -222,7 +228,7 @@ impl ChannelMatcher<'_> {
             None => conversion_factor(unit, &rule.unit),
         };
         let Some(factor) = factor else {
-            found.problems.push(ProblemKind::Conversion {
+            matched.problems.push(ProblemKind::Conversion {
                 channel: rule.name.clone(),
                 from: unit.clone(),
                 to: rule.unit.clone(),
@@ -289,18 +295,22 @@ impl ChannelMatcher<'_> {
 
     /// Adds a note about the named file channels that no dataset channel uses; none if there are
     /// problems, since these channels may then be the missing ones.
-    fn note_unused(&self, found: &mut ChannelMatch) {
+    fn note_unused(&self, matched: &mut ChannelMatch) {
         let mut unused: Vec<String> = Vec::new();
         for (index, label) in self.labels.iter().enumerate() {
-            let is_used = found.uses.iter().flatten().any(|used| used.index == index);
+            let is_used = matched
+                .uses
+                .iter()
+                .flatten()
+                .any(|used| used.index == index);
             if let Some(name) = &label.name
                 && !is_used
             {
                 unused.push(name.clone());
             }
         }
-        if found.problems.is_empty() && !unused.is_empty() {
-            found.notes.push(ChannelNote::NotInDataset {
+        if matched.problems.is_empty() && !unused.is_empty() {
+            matched.notes.push(ChannelNote::NotInDataset {
                 side: self.side,
                 names: unused,
             });

@@ -1,7 +1,7 @@
 //! Units, factors and signs that the engineer declares for channels.
 //!
-//! [`ChannelDeclarations`] are declared for the models in a scope ([`ScopedDeclarations`]); those that
-//! apply to a single model are merged into its [`ModelDeclarations`].
+//! [`ChannelDeclarations`] are declared for the models in a scope ([`ScopedDeclarations`]); those
+//! that apply to a single model are merged into its [`ModelDeclarations`].
 
 use std::collections::BTreeMap;
 

@@ -5,8 +5,12 @@ use crate::names::response_name::ResponseNameError;
 use crate::names::{KnownChannels, ResponseName};
 
 impl FoundModel {
-    /// Returns the channel names. For a single measured response, missing names are taken from the
-    /// variable name, or else from the file name, as far as these contain `known` channel names.
+    /// Returns the channel names, completed for a model that is a single measured response:
+    ///
+    /// 1. Missing names are taken from the variable name, as far as it contains `known` channel
+    ///    names.
+    /// 2. Names that are still missing are taken from the file name likewise.
+    /// 3. If a name is missing in the end and step 1 or 2 met an ambiguous text, that is reported.
     pub fn labels_with_name(&self, known: KnownChannels<'_>) -> NamedLabels {
         let mut named = NamedLabels {
             labels: [self.inputs.clone(), self.outputs.clone()],
@@ -16,8 +20,9 @@ impl FoundModel {
             return named;
         }
         let path = path_without_extension(self.file());
-        let stem = path.rsplit('/').next().unwrap_or_default();
-        for text in [self.variable(), stem] {
+        let file_name = path.rsplit('/').next().unwrap_or_default();
+        // Steps 1 and 2
+        for text in [self.variable(), file_name] {
             if named.are_complete() {
                 break;
             }
@@ -30,6 +35,7 @@ impl FoundModel {
                 }
             }
         }
+        // Step 3
         if named.are_complete() {
             named.ambiguous = None;
         }
@@ -67,8 +73,11 @@ impl NamedLabels {
         self.labels.iter().all(|labels| labels[0].name.is_some())
     }
 
-    /// Fills in missing channel names. If a name in the text is in the alias table but not in the
-    /// dataset, it is kept, so that no other channel takes its place.
+    /// Fills in missing channel names with those `found` in the text.
+    ///
+    /// For a side that `found` lacks, a name from the alias table is taken, although the dataset
+    /// has no such channel: the text "r_lon" names the output R, and a dataset without R must not
+    /// get the response under the name of another output.
     fn fill(&mut self, found: ResponseName, text: &str) {
         let aliased = ResponseName::find(text, KnownChannels::AliasTable).unwrap_or_default();
         let input = found.input.or(aliased.input);

@@ -34,16 +34,16 @@ fn join_response(joined: &mut ResponseDraft, response: &ResponseDraft) {
     let count = joined.omega.len();
     let new_bands = bands_or_full_range(response);
     let mut bands = bands_or_full_range(joined);
-    // `place` numbers the responses row by row: output times input count plus input. Each has two
+    // `number` counts the responses row by row: output times input count plus input. Each has two
     // band ends, and `count` values.
-    for place in 0..joined.re.shape[0] * joined.re.shape[1] {
-        let band = 2 * place..2 * place + 2;
+    for number in 0..joined.re.shape[0] * joined.re.shape[1] {
+        let band = 2 * number..2 * number + 2;
         let is_new = new_bands.values[band.clone()] != NOT_MEASURED;
         let is_known = bands.values[band.clone()] != NOT_MEASURED;
         if !is_new || is_known {
             continue;
         }
-        let values = place * count..(place + 1) * count;
+        let values = number * count..(number + 1) * count;
         joined.re.values[values.clone()].copy_from_slice(&response.re.values[values.clone()]);
         joined.im.values[values.clone()].copy_from_slice(&response.im.values[values.clone()]);
         bands.values[band.clone()].copy_from_slice(&new_bands.values[band]);
@@ -85,11 +85,11 @@ pub(super) fn note_unmeasured(model: &mut ModelDraft, rules: &Rules) {
     }
     let input_count = rules.inputs.len().max(1);
     let mut unmeasured = Vec::new();
-    // `place` numbers the responses row by row, as in `join_response`.
-    for (place, band) in bands.values.chunks(2).enumerate() {
+    // `number` counts the responses row by row, as in `join_response`.
+    for (number, band) in bands.values.chunks(2).enumerate() {
         if band == NOT_MEASURED
-            && let Some(output) = rules.outputs.get(place / input_count)
-            && let Some(input) = rules.inputs.get(place % input_count)
+            && let Some(output) = rules.outputs.get(number / input_count)
+            && let Some(input) = rules.inputs.get(number % input_count)
         {
             unmeasured.push(format!("{}/{}", output.name, input.name));
         }

@@ -1,9 +1,10 @@
-//! Agreement between channel names in files and in the dataset.
+//! Likeness between channel names in files and in the dataset: from the same name to any other name
+//! that the alias table knows for the channel.
 
 use crate::names::channel_alias::same_channel;
 use crate::names::{ChannelRule, SignedName};
 
-/// Agreement between a name in a file and a dataset channel's name or alias.
+/// Likeness between a name in a file and a dataset channel's name or alias.
 #[derive(Clone, Copy)]
 pub(super) enum Likeness {
     /// Same as the channel's name.
@@ -20,7 +21,7 @@ impl Likeness {
     pub(super) const CLOSEST_FIRST: [Self; 4] =
         [Self::Name, Self::Alias, Self::SameButForSign, Self::Channel];
 
-    /// Returns whether a name in a file agrees with a dataset channel in this way.
+    /// Returns whether a name in a file and a dataset channel have this likeness.
     pub(super) fn holds(self, name: &str, rule: &ChannelRule) -> bool {
         match self {
             Self::Name => name == rule.name,

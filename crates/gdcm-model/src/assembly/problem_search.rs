@@ -77,14 +77,16 @@ fn row_problems(part: &Part) -> Vec<ProblemKind> {
 
 /// Returns a problem if a model has no sample time but its poles look discrete-time.
 ///
-/// All poles lie inside the unit circle, or as little outside as an unstable helicopter mode, and
-/// at least half of them (two or more) lie near 1. As continuous-time poles, those near 1 would be
-/// modes that diverge within about a second.
+/// Discrete-time poles are `e^(lambda T)`, with the poles `lambda` and the sample time T: inside
+/// the unit circle, or as little outside as an unstable helicopter mode, and near 1 for modes that
+/// are slow compared with T. A model looks like that if all its poles have a magnitude up to 1.05,
+/// and at least half of them (two or more) a real part above 0.5. As continuous-time poles, the
+/// latter would be modes that diverge by a factor of e within two seconds.
 fn sample_time_problem(part: &Part) -> Option<ProblemKind> {
     /// Real part above which a pole is regarded as near 1.
-    const NEAR: f64 = 0.5;
+    const LEAST_REAL_PART: f64 = 0.5;
     /// Maximum pole magnitude; above 1 to admit unstable modes.
-    const OUTSIDE: f64 = 1.05;
+    const GREATEST_MAGNITUDE: f64 = 1.05;
     let a = part.found.draft.matrices[0].as_ref()?;
     if !a.is_square() || a.iter().any(|entry| !entry.is_finite()) {
         return None;
@@ -95,9 +97,12 @@ fn sample_time_problem(part: &Part) -> Option<ProblemKind> {
         return None;
     }
     let poles = a.complex_eigenvalues();
-    let near = poles.iter().filter(|pole| pole.re > NEAR).count();
-    let are_inside = poles.iter().all(|pole| pole.norm() <= OUTSIDE);
-    if are_inside && near >= 2 && 2 * near >= poles.len() {
+    let near = poles
+        .iter()
+        .filter(|pole| pole.re > LEAST_REAL_PART)
+        .count();
+    let are_small = poles.iter().all(|pole| pole.norm() <= GREATEST_MAGNITUDE);
+    if are_small && near >= 2 && 2 * near >= poles.len() {
         Some(ProblemKind::NoSampleTime {
             near,
             poles: poles.len(),

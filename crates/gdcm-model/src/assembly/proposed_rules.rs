@@ -94,13 +94,16 @@ impl<'m> LabelledModel<'m> {
 ///    channels, up to the largest number that a model has.
 fn proposed_channels(models: &[LabelledModel<'_>], side: ChannelSide) -> Vec<ChannelRule> {
     // Step 1.
-    let mut order: Vec<&LabelledModel<'_>> = models.iter().collect();
-    order.sort_by_key(|model| (Reverse(model.named_count(side)), !model.names_itself(side)));
-    let first_is_measured = order.first().is_some_and(|model| model.is_measured());
+    let mut most_named_first: Vec<&LabelledModel<'_>> = models.iter().collect();
+    most_named_first
+        .sort_by_key(|model| (Reverse(model.named_count(side)), !model.names_itself(side)));
+    let first_is_measured = most_named_first
+        .first()
+        .is_some_and(|model| model.is_measured());
     // Step 2; the units are counted meanwhile.
     let mut channels: Vec<ChannelRule> = Vec::new();
     let mut units: Vec<UnitCounts> = Vec::new();
-    for model in order {
+    for model in most_named_first {
         let may_add = channels.is_empty() || (model.is_measured() && first_is_measured);
         for label in model.labels(side) {
             let Some(name) = &label.name else {

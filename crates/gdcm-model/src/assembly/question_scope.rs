@@ -20,36 +20,37 @@ use crate::names::ChannelRule;
 /// the channel has the same problem. If there is none, the scope is the model itself.
 pub(super) fn set_scopes(problems: &mut [Problem], parts: &[Part], rules: &Rules) {
     // For each question, the indices of the models that raise it.
-    let mut asking: BTreeMap<Question, BTreeSet<usize>> = BTreeMap::new();
+    let mut models_asking: BTreeMap<Question, BTreeSet<usize>> = BTreeMap::new();
     for problem in problems.iter() {
         if let (Some(part), Some(question)) = (problem.part, problem.kind.question()) {
-            asking.entry(question).or_default().insert(part);
+            models_asking.entry(question).or_default().insert(part);
         }
     }
     let mut wide_scopes: BTreeMap<&Question, Vec<FileScope>> = BTreeMap::new();
-    for (question, asking) in &asking {
-        wide_scopes.insert(question, scopes_asking(question, asking, parts, rules));
+    for (question, asking) in &models_asking {
+        wide_scopes.insert(question, wide_scopes_asking(question, asking, parts, rules));
     }
     for problem in problems {
         let (Some(part), Some(question)) = (problem.part, problem.kind.question()) else {
             continue;
         };
-        let own = role_scope(&parts[part]);
-        let wide = wide_scopes.get(&question).and_then(|scopes| {
+        let role = role_scope(&parts[part]);
+        let wide_scope = wide_scopes.get(&question).and_then(|scopes| {
             scopes
                 .iter()
-                .find(|scope| **scope == FileScope::All || Some(*scope) == own.as_ref())
+                .find(|scope| **scope == FileScope::All || Some(*scope) == role.as_ref())
         });
-        problem.scope = Some(match wide {
+        problem.scope = Some(match wide_scope {
             Some(scope) => scope.clone(),
             None => FileScope::Files(parts[part].found.key()),
         });
     }
 }
 
-/// Returns the scopes in which every model with the channel raises the question: all models, or the
-/// physics models, or the identified models; empty if there is none.
-fn scopes_asking(
+/// Returns the wide scopes in which every model with the channel raises the question: only all
+/// models if they all do, otherwise the physics models or the identified models; empty if there is
+/// none. `asking` has the indices of the models that raise the question.
+fn wide_scopes_asking(
     question: &Question,
     asking: &BTreeSet<usize>,
     parts: &[Part],

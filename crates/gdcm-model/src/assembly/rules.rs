@@ -1,5 +1,5 @@
-//! The engineer's rules for the files in a folder: channels, conversions, signs and values for single
-//! models. Rules and files together determine the dataset.
+//! The engineer's rules for the files in a folder: channels, conversions, signs and values for
+//! single models. Rules and files together determine the dataset.
 
 use std::collections::BTreeMap;
 

@@ -191,23 +191,28 @@ impl Condition {
         models: Vec<Model>,
         records: Vec<ConditionRecord>,
     ) -> Result<Self, ConditionError> {
-        let mut kept = self.records.clone();
-        for whole in &mut kept {
+        let mut all_records = self.records.clone();
+        for whole in &mut all_records {
             if records.iter().any(|part| part.is_part_of(whole)) {
                 whole.used = false;
             }
         }
         for record in records {
-            let same_name = kept.iter().position(|other| other.name == record.name);
-            let replaced =
-                same_name.or_else(|| kept.iter().position(|other| other.is_same_as(&record)));
+            let same_name = all_records
+                .iter()
+                .position(|other| other.name == record.name);
+            let replaced = same_name.or_else(|| {
+                all_records
+                    .iter()
+                    .position(|other| other.is_same_as(&record))
+            });
             match replaced {
-                Some(index) => kept[index] = record,
-                None => kept.push(record),
+                Some(index) => all_records[index] = record,
+                None => all_records.push(record),
             }
         }
         Self::new(self.flight_state.clone(), self.bundles[0].clone(), models)?
-            .with_records(kept)?
+            .with_records(all_records)?
             .with_moved_models(self.moved.clone())
     }
 

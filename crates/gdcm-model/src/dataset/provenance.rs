@@ -46,8 +46,8 @@ impl Provenance {
         parts.join(", ")
     }
 
-    /// Returns the provenance with its preposition: "from models/roll+5.mat, variable sys", "from the
-    /// records sweep_1".
+    /// Returns the provenance with its preposition: "from models/roll+5.mat, variable sys", "from
+    /// the records sweep_1".
     pub fn origin_words(&self) -> String {
         let words = self.words();
         if self.file.is_none() && words.starts_with("from ") {

@@ -122,31 +122,34 @@ pub fn parse_direction(mark: &str) -> Option<f64> {
     }
 }
 
-/// Returns the factor, 1 or -1, that converts the sign of the file channel `label` to that of the
-/// dataset channel `channel`; `None` if the names do not determine it.
+/// Returns the factor, 1 or -1, that converts the sign of a file channel to that of a dataset
+/// channel, given their names; `None` if the names do not determine it.
 ///
 /// 1. Equal names have the same sign.
 /// 2. If one name marks a direction, the direction of the other must be known; a load factor is
 ///    positive up.
 /// 3. Without marked directions, a leading minus reverses the sign. If neither name has a minus, a
 ///    z acceleration and a load factor may differ in sign, and the factor is undetermined.
-pub fn sign_between(label: &str, channel: &str) -> Option<f64> {
-    if label.trim() == channel.trim() {
+pub fn sign_between(file_name: &str, dataset_name: &str) -> Option<f64> {
+    // Step 1
+    if file_name.trim() == dataset_name.trim() {
         return Some(1.0);
     }
-    let label = SignedName::parse(label);
-    let channel = SignedName::parse(channel);
-    let sign = if label.minus == channel.minus {
+    let in_file = SignedName::parse(file_name);
+    let in_dataset = SignedName::parse(dataset_name);
+    let sign = if in_file.minus == in_dataset.minus {
         1.0
     } else {
         -1.0
     };
-    if label.direction.is_some() || channel.direction.is_some() {
-        return Some(sign * label.known_direction()? * channel.known_direction()?);
+    // Step 2
+    if in_file.direction.is_some() || in_dataset.direction.is_some() {
+        return Some(sign * in_file.known_direction()? * in_dataset.known_direction()?);
     }
-    let has_minus = label.minus || channel.minus;
-    let may_differ = label.is_z_acceleration() && channel.is_load_factor()
-        || label.is_load_factor() && channel.is_z_acceleration();
+    // Step 3
+    let has_minus = in_file.minus || in_dataset.minus;
+    let may_differ = in_file.is_z_acceleration() && in_dataset.is_load_factor()
+        || in_file.is_load_factor() && in_dataset.is_z_acceleration();
     if may_differ && !has_minus {
         None
     } else {

@@ -1,7 +1,8 @@
 //! Patterns for common folder, file and variable names, used unless the rules give others.
 //!
 //! Earlier patterns take precedence. A group `(?<airspeed_kt>...)` sets the field after which it is
-//! named ([`NamePattern`]).
+//! named ([`NamePattern`]). Most patterns begin with `(?:^|[/_ -])` and end with `(?:[/_ .#-]|$)`:
+//! a value is recognised only between the marks that separate the parts of a name.
 
 use std::sync::LazyLock;
 
@@ -16,22 +17,30 @@ pub fn standard_patterns() -> &'static [NamePattern] {
 /// Standard patterns, compiled once because every record needs them.
 static STANDARD: LazyLock<Vec<NamePattern>> = LazyLock::new(|| {
     let texts = [
+        // Condition number: "c03", "cond 3", "fc-12".
         r"(?:^|[/_ #.-])(?:c|cond|condition|fc|case|point)[_ -]?0*(?<condition>\d+)(?:[/_ .#-]|$)".to_owned(),
+        // Airspeed: "045kt", "V090kt". After a hyphen it needs three digits: "V-10kt" is an offset.
         r"(?:^|[/_ ])v?0*(?<airspeed_kt>\d+(?:\.\d+)?)[_ ]?(?:kt|kts|ktas|kcas|kias|knots)(?:[/_ .#-]|$)".to_owned(),
         r"-(?<airspeed_kt>\d{3})[_ ]?(?:kt|kts|ktas|kcas|kias|knots)(?:[/_ .#-]|$)".to_owned(),
+        // Altitude and mass in numbers: "2000ft", "6600kg".
         r"(?:^|[/_ -])(?<altitude_ft>\d{3,5})[_ ]?ft(?:[/_ .#-]|$)".to_owned(),
         r"(?:^|[/_ -])(?<mass_kg>\d{3,6})[_ ]?kg(?:[/_ .#-]|$)".to_owned(),
+        // Weight and altitude in classes: "heavy", "low_gw", "high_alt". Of two bare classes,
+        // "low_high", the first is the altitude and the second the weight.
         r"(?:^|[/_ -])(?<weight>light|heavy)(?:[/_ .#-]|$)".to_owned(),
         r"(?:^|[/_ -])(?<weight>low|high)[_ ]?(?:w|weight|gw|mass)(?:[/_ .#-]|$)".to_owned(),
         r"(?:^|[/_ -])(?<altitude>low|high)[_ ]?(?:alt|altitude)?[/_ -](?<weight>low|high)(?:[/_ .#-]|$)".to_owned(),
         r"(?:^|[/_ -])(?<altitude>low|high)[_ ]?(?:alt|altitude)?(?:[/_ .#-]|$)".to_owned(),
+        // Trim offsets: "roll+5", "dV-10", "phi_m5".
         offset_pattern("roll|phi|bank", "roll_deg"),
         offset_pattern("v|speed|airspeed|tas|ias", "airspeed_kt"),
         offset_pattern("roc|climb|rateofclimb|hdot", "rate_of_climb_fpm"),
         offset_pattern("pitch|theta", "pitch_deg"),
         offset_pattern("beta|slip|sideslip", "sideslip_deg"),
-        // In percent only: in other units, a parameter looks like a trim offset.
+        // Moved parameter: "Ixx+5%". In percent only: in other units, a parameter looks like a trim
+        // offset.
         r"(?:^|[/_ #,])(?<parameter>[a-z][a-z0-9]*(?:_[a-z0-9]+)*)[_ ]?(?<delta>[+-]\d+(?:\.\d+)?)[_ ]?(?<delta_unit>%|pct|percent)".to_owned(),
+        // Role: "nominal", "CT-PBSID 2", "flight_1", "perturbed".
         r"(?:^|[/_ #.-])(?<nominal>nominal|nom|trim|baseline)(?:[/_ .#(-]|$)".to_owned(),
         r"(?:^|[/_ #.-])(?<identified>identified|ident|id|sysid|sid|(?:ct-?)?pbsid|n4sid|cifer|flight|flt|measured|frf)\d*(?:[/_ .#(-]|$)"
             .to_owned(),

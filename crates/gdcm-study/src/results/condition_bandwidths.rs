@@ -22,7 +22,7 @@ use gdcm_method::requirements::attitude_response::{
     AttitudeResponse, AttitudeResponseError, ResponseAt, search_frequencies,
 };
 use gdcm_method::requirements::bandwidth::{
-    AboveBand, Bandwidth, BandwidthSettings, PairBand, substitution_bar,
+    AboveBand, Bandwidth, BandwidthSettings, PairUncertainty, substitution_bar,
 };
 use gdcm_method::requirements::sampled_response::SampledResponse;
 use gdcm_model::dataset::model::ModelBands;
@@ -240,7 +240,9 @@ impl<'a> ConditionBandwidths<'a> {
                 AboveBand::Marked
             },
         };
-        let deviation = model.deviations.map(|bands| PairBand { bands, pair });
+        let deviation = model
+            .deviations
+            .map(|bands| PairUncertainty { bands, pair });
         Ok(MeasuredBandwidth {
             bandwidth: Bandwidth::read(&attitude, &settings, deviation),
             reversed_phase_deg: attitude.reversed_phase_deg(),

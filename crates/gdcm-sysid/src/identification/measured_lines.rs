@@ -105,8 +105,8 @@ impl SegmentLines {
             ReferenceResponse::new(&driven_lines, self.fitted_range, outputs, executor)?;
         let logged = self.measure_response(executor)?;
         Ok(Measurement {
-            measured: instrument.measured,
-            spectra: instrument.spectra,
+            measured: through_reference.measured,
+            spectra: through_reference.spectra,
             direct: Some(weigh(&self.to_fit, &logged, executor)?),
         })
     }

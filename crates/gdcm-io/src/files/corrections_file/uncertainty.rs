@@ -237,7 +237,7 @@ fn second_variable_json(test: &SecondVariableTest) -> Value {
     json!({
         "variable": test.variable.name(),
         "effect": effect.map(|effect| effect.effect),
-        "visible": effect.map(|effect| effect.visible),
+        "visible": effect.map(|effect| effect.detectable),
         "p": effect.map(|effect| effect.p),
         "p_holm": test.p_holm,
         "left_out_without": effect.and_then(|effect| effect.left_out_without),

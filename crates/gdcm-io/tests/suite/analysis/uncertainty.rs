@@ -274,7 +274,7 @@ fn assert_pairs(analysis: &Analysis, found: &Uncertainty, reference: &Value, tol
             assert_near(name, effect.effect, &reference["effect"], 10.0 * tolerance);
             assert_near(
                 name,
-                effect.visible,
+                effect.detectable,
                 &reference["visible"],
                 10.0 * tolerance,
             );
@@ -470,7 +470,7 @@ fn a_table_of_numbers_is_split_as_the_reference_does() {
                 .unwrap()
                 .effect(&figures, 0.9);
             assert_near(name, effect.effect, &table[name]["effect"], TOLERANCE);
-            assert_near(name, effect.visible, &table[name]["half"], TOLERANCE);
+            assert_near(name, effect.detectable, &table[name]["half"], TOLERANCE);
             assert_near(name, effect.p, &table[name]["p"], TOLERANCE);
             assert_near(
                 name,

@@ -96,7 +96,7 @@ fn flown_with(mixing: &DMatrix<f64>, feedback: &DMatrix<f64>) -> CouplingProblem
         condition.usable = PairTable::filled(3, 2, true);
     }
     problem.options.ridge = 1e-9;
-    problem.options.solves = 12;
+    problem.options.passes = 12;
     problem
 }
 

@@ -41,12 +41,12 @@ fn index(value: &Value) -> usize {
 fn the_synthetic_aircraft_is_recovered() {
     let toy = &REFERENCE["toy"];
     let tolerance = toy["recovered"]["tolerance"].as_f64().unwrap();
-    let solves = toy["recovered"]["solves"].as_u64().unwrap() as usize;
+    let passes = toy["recovered"]["solves"].as_u64().unwrap() as usize;
     let problem = synthetic_aircraft(
         "R",
         CouplingOptions {
             ridge: 1e-9,
-            solves,
+            passes,
             ..CouplingOptions::default()
         },
     );
@@ -65,18 +65,18 @@ fn the_synthetic_aircraft_is_recovered() {
 }
 
 #[test]
-fn every_solve_of_the_disturbed_aircraft_agrees() {
+fn every_pass_of_the_disturbed_aircraft_agrees() {
     let known = &REFERENCE["toy"]["disturbed"];
     let found = fit(&disturbed());
     assert_eq!(found.unknowns, unknowns(&REFERENCE["toy"]["names"]));
-    let solves = known["coefficients_of_each_solve"].as_array().unwrap();
-    assert_eq!(found.coefficients.len(), solves.len());
-    for (solve, (coefficients, expected)) in found.coefficients.iter().zip(solves).enumerate() {
+    let passes = known["coefficients_of_each_solve"].as_array().unwrap();
+    assert_eq!(found.coefficients.len(), passes.len());
+    for (pass, (coefficients, expected)) in found.coefficients.iter().zip(passes).enumerate() {
         for (unknown, expected) in numbers(expected).into_iter().enumerate() {
             let error = (coefficients[unknown] - expected).abs();
             assert!(
                 error < known["tolerance"].as_f64().unwrap(),
-                "solve {solve}, {unknown}: {error:e}"
+                "pass {pass}, {unknown}: {error:e}"
             );
         }
     }
@@ -99,20 +99,25 @@ fn a_state_space_with_feed_through_is_coupled_exactly() {
     }
 }
 
-/// Dense form of the least-squares problem in the last pass, with a complex row for each response
-/// and frequency.
+/// Dense form of the least-squares problem in the last pass, `min sum q^2 |S R' - F M - F K R'|^2`
+/// over the entries of `M` and `K`, with a complex row for each response and frequency. `H` and
+/// `R'` are the physics and the flight response, `S = (I - H K_0)^-1` and `F = S H`, where `K_0` is
+/// the feedback from the pass before.
 struct DenseProblem {
+    /// A column for each unknown: `F` times the unknown's factor, 1 or an entry of `R'`.
     columns: Vec<Vec<Complex<f64>>>,
-    target: Vec<Complex<f64>>,
-    squared: Vec<f64>,
+    /// `S R'`.
+    right_side: Vec<Complex<f64>>,
+    /// `q^2`.
+    squared_weights: Vec<f64>,
 }
 
 impl DenseProblem {
     fn new(problem: &CouplingProblem, unknowns: &[Unknown], last: &CouplingMatrices) -> Self {
         let mut dense = Self {
             columns: vec![Vec::new(); unknowns.len()],
-            target: Vec::new(),
-            squared: Vec::new(),
+            right_side: Vec::new(),
+            squared_weights: Vec::new(),
         };
         for condition in &problem.conditions {
             let v: f64 = last.airspeeds().scaled(condition.airspeed_kt);
@@ -123,16 +128,16 @@ impl DenseProblem {
                     .try_inverse()
                     .unwrap();
                 let f = &s * &h;
-                let target = &s * &r;
+                let s_r = &s * &r;
                 let coupled = &f * last.mixing(condition.airspeed_kt).map(Complex::from);
                 for pair in problem.on_axis.pairs() {
                     let entry = (pair.output, pair.input);
                     let deviation = condition.deviation.as_ref().unwrap()[pair][k];
-                    let axis = if problem.on_axis[pair] { 2.0 } else { 1.0 };
-                    let s = axis / (1.0 + (deviation / 0.06_f64).powi(2)).sqrt();
-                    let q = weight(s, coupled[entry], r[entry]);
-                    dense.squared.push(q * q);
-                    dense.target.push(target[entry]);
+                    let w_p = if problem.on_axis[pair] { 2.0 } else { 1.0 };
+                    let fixed_weight = w_p / (1.0 + (deviation / 0.06_f64).powi(2)).sqrt();
+                    let q = weight(fixed_weight, coupled[entry], r[entry]);
+                    dense.squared_weights.push(q * q);
+                    dense.right_side.push(s_r[entry]);
                     for (column, unknown) in dense.columns.iter_mut().zip(unknowns) {
                         column.push(match *unknown {
                             Unknown::Mixing { from, .. } if from != pair.input => {
@@ -154,13 +159,15 @@ impl DenseProblem {
 
     /// `sum q^2 Re conj(a) b`.
     fn weighted_product(&self, a: &[Complex<f64>], b: &[Complex<f64>]) -> f64 {
-        (0..self.target.len())
-            .map(|row| self.squared[row] * (a[row].conj() * b[row]).re)
+        (0..self.right_side.len())
+            .map(|row| self.squared_weights[row] * (a[row].conj() * b[row]).re)
             .sum()
     }
 }
 
-/// `q` by its formula (M16.2).
+/// Weight `q = s / max(|R'|, |H_c| / 2) / (1 + (e s / 10)^2)^(1/4)` for the flight response `R'`
+/// and the coupled physics response `H_c` of the pass before (M16.2). `e^2` is the summand of J: 20
+/// times the squared error in dB, and 20 times 0.0175 times the squared error in degrees (M4).
 fn weight(s: f64, coupled: Complex<f64>, flight: Complex<f64>) -> f64 {
     let ratio = coupled / flight;
     let db = 20.0 * ratio.norm().log10();
@@ -175,11 +182,11 @@ fn the_gradient_of_the_weighted_problem_vanishes() {
     let problem = disturbed();
     let found = fit(&problem);
     let [.., before, optimum] = &found.coefficients[..] else {
-        panic!("expected five solves")
+        panic!("expected five passes")
     };
     let last = found.matrices.with(&found.unknowns, before);
     let dense = DenseProblem::new(&problem, &found.unknowns, &last);
-    let residuals: Vec<Complex<f64>> = (0..dense.target.len())
+    let residuals: Vec<Complex<f64>> = (0..dense.right_side.len())
         .map(|row| {
             let fitted: Complex<f64> = dense
                 .columns
@@ -187,7 +194,7 @@ fn the_gradient_of_the_weighted_problem_vanishes() {
                 .zip(optimum)
                 .map(|(column, theta)| column[row] * theta)
                 .sum();
-            dense.target[row] - fitted
+            dense.right_side[row] - fitted
         })
         .collect();
     for ((column, theta), unknown) in dense.columns.iter().zip(optimum).zip(&found.unknowns) {
@@ -195,7 +202,7 @@ fn the_gradient_of_the_weighted_problem_vanishes() {
         let regularisation = 1e-3 * diagonal * (theta - unknown.uncoupled());
         let gradient = regularisation - dense.weighted_product(column, &residuals);
         let size = dense
-            .weighted_product(column, &dense.target)
+            .weighted_product(column, &dense.right_side)
             .abs()
             .max(diagonal);
         assert!(

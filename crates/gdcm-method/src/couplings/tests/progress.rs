@@ -67,7 +67,8 @@ fn a_fit_reports_every_condition_in_every_pass_in_order() {
     let listener = Listener::cancelling_after(usize::MAX);
     fit_couplings(&disturbed(), &Sequential, &listener).unwrap();
     let reports = listener.reports.into_inner().unwrap();
-    // Each of the five passes reports four conditions and the solution; then the end is reported.
+    // Progress is counted in thousandths. Each of the five passes reports four conditions and the
+    // solution, 40 thousandths each; then the end is reported, the 26th report.
     assert_eq!(
         (
             reports.len(),
@@ -98,6 +99,7 @@ fn the_fits_without_each_condition_are_reported_step_by_step() {
     let listener = Listener::cancelling_after(usize::MAX);
     left_out_fits(&disturbed(), &Sequential, &listener).unwrap();
     let reports = listener.reports.into_inner().unwrap();
+    // Four fits, each of five passes with three conditions and the solution: 20 reports.
     assert!(
         reports.len() >= 4 * 20 && reports.is_sorted() && *reports.last().unwrap() >= 999,
         "{reports:?}"

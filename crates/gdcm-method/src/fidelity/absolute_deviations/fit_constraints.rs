@@ -37,7 +37,7 @@ impl<'a> Fit<'a> {
     }
 
     /// Returns a constraint's left-hand side at `w`, or its change along a direction `w`.
-    pub(super) fn left(&self, constraint: usize, w: &[f64]) -> f64 {
+    pub(super) fn left_hand_side(&self, constraint: usize, w: &[f64]) -> f64 {
         if self.is_weight(constraint) {
             return w[constraint - self.y.len()];
         }
@@ -45,12 +45,13 @@ impl<'a> Fit<'a> {
     }
 
     /// Returns a constraint's right-hand side; 0 for a weight.
-    pub(super) fn right(&self, constraint: usize) -> f64 {
+    pub(super) fn right_hand_side(&self, constraint: usize) -> f64 {
         self.y.get(constraint).copied().unwrap_or(0.0)
     }
 
+    /// Returns a constraint's deviation at `w`.
     pub(super) fn deviation(&self, constraint: usize, w: &[f64]) -> f64 {
-        self.left(constraint, w) - self.right(constraint)
+        self.left_hand_side(constraint, w) - self.right_hand_side(constraint)
     }
 
     /// Returns whether a constraint is `w_k = 0`.
@@ -72,14 +73,15 @@ impl<'a> Fit<'a> {
     }
 
     /// Computes `sum_i |x_i w - y_i|`.
-    pub(super) fn deviations(&self, w: &[f64]) -> f64 {
+    pub(super) fn sum_of_deviations(&self, w: &[f64]) -> f64 {
         (0..self.y.len())
             .map(|row| self.deviation(row, w).abs())
             .sum()
     }
 
-    /// Returns the least-squares weights with negative values set to zero, close to the optimal
-    /// vertex; zero weights where the normal equations are singular.
+    /// Returns the least-squares weights with negative values set to zero, from which the search
+    /// starts because they are close to the optimal vertex; zero weights where the normal equations
+    /// are singular.
     pub(super) fn least_squares(&self) -> Vec<f64> {
         let x = DMatrix::from_row_slice(self.y.len(), self.unknowns, &self.x);
         let Some(normal) = x.tr_mul(&x).cholesky() else {
@@ -90,9 +92,9 @@ impl<'a> Fit<'a> {
     }
 
     /// Computes `sum_i (sqrt(x_i w) - sqrt(y_i))^2`.
-    pub(super) fn squared_root_deviations(&self, w: &[f64]) -> f64 {
+    pub(super) fn sum_of_squared_root_deviations(&self, w: &[f64]) -> f64 {
         (0..self.y.len())
-            .map(|row| (self.left(row, w).max(0.0).sqrt() - self.y[row].sqrt()).powi(2))
+            .map(|row| (self.left_hand_side(row, w).max(0.0).sqrt() - self.y[row].sqrt()).powi(2))
             .sum()
     }
 }

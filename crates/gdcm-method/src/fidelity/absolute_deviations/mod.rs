@@ -38,16 +38,18 @@ pub enum FitError {
 ///
 /// ```text
 /// 1  vertex <- intersection of those constraints that the least squares fit satisfies best
-/// 2  edge along which the sum falls: release a constraint in the basis, move to where the sum stops falling,
-///    add the constraint met there; again from 2
-/// 3  edges along which the sum stays the same: compare all vertices that they lead to; again from 2
-/// 4  where more constraints meet than a basis holds, edges may hide a descent: solve the linear program
-///    min sum t,  -t <= x w - y <= t,  w >= 0,  and repeat 2 and 3 from the vertex nearest to its solution
+/// 2  edge along which the sum falls: release a constraint in the basis, move to where the sum
+///    stops falling, add the constraint met there; again from 2
+/// 3  edges along which the sum stays the same: compare all vertices that they lead to; again
+///    from 2
+/// 4  where more constraints meet than a basis holds, edges may hide a descent: solve the linear
+///    program  min sum t,  -t <= x w - y <= t,  w >= 0,  and repeat 2 and 3 from the vertex nearest
+///    to its solution
 /// ```
 ///
 /// Barrodale and Roberts' simplex method (SIAM J. Numer. Anal. 10(5), 1973): exact, and identical
-/// on every machine. `x` (rows with equal length) and `y` must not be negative. If all `y` are zero,
-/// so are the weights.
+/// on every machine. `x` (rows with equal length) and `y` must not be negative. If all `y` are
+/// zero, so are the weights.
 ///
 /// # Errors
 /// [`FitError::Cancelled`] at the first vertex at which the search is `cancelled`,
@@ -74,7 +76,7 @@ pub fn least_absolute_deviations(
         let weights = solve_linear_program(x, &scaled, unknowns)?;
         if let Some(vertex) = Vertex::nearest(&fit, &weights) {
             let other = best_vertex(&fit, vertex, cancelled)?;
-            if fit.deviations(&other.weights) < fit.deviations(&best.weights) {
+            if fit.sum_of_deviations(&other.weights) < fit.sum_of_deviations(&best.weights) {
                 best = other;
             }
         }
@@ -92,8 +94,8 @@ fn best_vertex(
     start: Vertex,
     cancelled: &dyn Fn() -> bool,
 ) -> Result<Vertex, FitError> {
-    /// Limit on the compared vertices, to limit the run time: with few unknowns there are far fewer
-    /// equally good vertices.
+    /// Limit on the compared vertices, which limits the run time. With few unknowns there are far
+    /// fewer equally good vertices; beyond it, the best vertex so far is returned.
     const MOST_VERTICES: usize = 300;
     let mut best = start.clone();
     // Equally good vertices; the edges from those before `next` have been followed.
@@ -114,8 +116,8 @@ fn best_vertex(
         };
         for vertex in equally_good {
             if !equal.iter().any(|known| known.coincides_with(&vertex)) {
-                if fit.squared_root_deviations(&vertex.weights)
-                    < fit.squared_root_deviations(&best.weights)
+                if fit.sum_of_squared_root_deviations(&vertex.weights)
+                    < fit.sum_of_squared_root_deviations(&best.weights)
                 {
                     best = vertex.clone();
                 }
@@ -175,8 +177,8 @@ mod tests {
             let fit = Fit::new(&x, &scaled);
             let weights = least_absolute_deviations(&x, &y, &|| false).unwrap();
             let scaled_weights: Vec<f64> = weights.iter().map(|weight| weight / largest).collect();
-            let found = fit.deviations(&scaled_weights);
-            let program = fit.deviations(&solve_linear_program(&x, &scaled, 3).unwrap());
+            let found = fit.sum_of_deviations(&scaled_weights);
+            let program = fit.sum_of_deviations(&solve_linear_program(&x, &scaled, 3).unwrap());
             // The linear program is solved to a relative tolerance of 1e-11; the search is exact.
             proptest::prop_assert!(found <= program * (1.0 + 1e-9) + 1e-12, "{found} {program}");
         }

@@ -57,7 +57,9 @@ impl Vertex {
         }
         let right = DVector::from_iterator(
             basis.len(),
-            basis.iter().map(|&constraint| fit.right(constraint)),
+            basis
+                .iter()
+                .map(|&constraint| fit.right_hand_side(constraint)),
         );
         let weights: Vec<f64> = matrix.lu().solve(&right)?.iter().copied().collect();
         if weights.iter().all(|&weight| weight > -ZERO) {

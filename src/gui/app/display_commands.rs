@@ -47,7 +47,7 @@ impl GdcmApp {
                 display.judging.requirements = requirements;
             }
             DisplayCommand::ShowPage(page) => match page {
-                ViewPage::Overview(has_phases) => {
+                ViewPage::Overview { has_phases } => {
                     display.frequency.overview.show_phase = has_phases;
                 }
                 ViewPage::Poles(page) => display.pages.poles = page,

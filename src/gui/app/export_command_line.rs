@@ -59,7 +59,7 @@ pub(super) fn export_command_line(
     source: &CommandSource,
     form: &ExportForm,
 ) -> Result<String, Message> {
-    let set = form.set()?;
+    let set = form.export_set()?;
     let Some(decisions) = study_words(study, source) else {
         let text = "the command line reads the decisions from the study: save it first";
         return Err(Message::new("study-not-saved", text));

@@ -72,7 +72,7 @@ impl GdcmApp {
         // Step 1.
         let form = &mut self.state.forms.export;
         form.error = None;
-        if let Err(message) = form.set() {
+        if let Err(message) = form.export_set() {
             form.error = Some(message);
             return;
         }

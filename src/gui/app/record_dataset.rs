@@ -17,8 +17,8 @@ use super::GdcmApp;
 use super::document_files::DatasetOfRecords;
 use super::readers::SilentProgress;
 use crate::gui::commands::records::RecordsCommand;
+use crate::gui::state::dataset_form::DatasetForm;
 use crate::gui::state::forms::FormKind;
-use crate::gui::state::wanted_dataset::WantedDataset;
 use crate::message::Message;
 use crate::message_codes::layout_problem_code;
 
@@ -63,8 +63,8 @@ impl GdcmApp {
             Some(source) => source.with_extension("json.gz").display().to_string(),
             None => String::new(),
         };
-        self.state.records.wanted =
-            WantedDataset::proposed(rows, self.state.study.settings.band, path);
+        self.state.records.dataset_form =
+            DatasetForm::proposed(rows, self.state.study.settings.band, path);
         self.state.forms.shown = Some(FormKind::RecordDataset);
     }
 
@@ -72,12 +72,12 @@ impl GdcmApp {
     /// opens it.
     pub(super) fn make_record_dataset(&mut self) {
         let records = &mut self.state.records;
-        records.wanted.problems.clear();
-        let (channels, band) = match records.wanted.channels() {
+        records.dataset_form.problems.clear();
+        let (channels, band) = match records.dataset_form.channels() {
             Ok(parsed) => parsed,
-            Err(problem) => return records.wanted.problems.push(problem),
+            Err(problem) => return records.dataset_form.problems.push(problem),
         };
-        let typed = PathBuf::from(records.wanted.path.trim());
+        let typed = PathBuf::from(records.dataset_form.path.trim());
         let request = DatasetRequest {
             sources: records.sources.clone(),
             channels,
@@ -95,7 +95,7 @@ impl GdcmApp {
             app.state.records.reading = None;
             match made {
                 Some(Ok(made)) => app.write_record_dataset(made),
-                Some(Err(problems)) => app.state.records.wanted.problems = problems,
+                Some(Err(problems)) => app.state.records.dataset_form.problems = problems,
                 None => {}
             }
         });

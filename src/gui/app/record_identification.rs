@@ -15,6 +15,7 @@ use gdcm_study::jobs::identification_jobs::IdentifyJob;
 use gdcm_sysid::identification::{Identification, IdentificationError};
 
 use super::GdcmApp;
+use crate::gui::state::condition_records::EndedIdentification;
 use crate::gui::state::notices::{Activity, NoticeAction};
 use crate::message::Message;
 
@@ -22,7 +23,7 @@ impl GdcmApp {
     /// Requests identification in these conditions; replaces waiting and running jobs for the same
     /// conditions. If requests are refused, reports the last refusal.
     pub(super) fn identify_conditions(&mut self, conditions: &[ConditionId]) {
-        if self.state.records.running.is_empty() {
+        if self.state.records.jobs.is_empty() {
             self.state.records.requested_count = 0;
         }
         let mut refusal = None;
@@ -48,7 +49,7 @@ impl GdcmApp {
 
     /// Stops running and waiting identification jobs; they can be started again.
     pub(super) fn stop_identifying(&mut self) {
-        let unfinished = std::mem::take(&mut self.state.records.running).len();
+        let unfinished = std::mem::take(&mut self.state.records.jobs).len();
         let requested = self.state.records.requested_count;
         if requested > 1 && unfinished > 0 {
             let finished = requested.saturating_sub(unfinished);
@@ -63,18 +64,18 @@ impl GdcmApp {
         job: IdentifyJob,
         outcome: Result<Arc<Identification>, IdentificationError>,
     ) {
-        if !self.state.records.running.contains(&job) {
+        if !self.state.records.jobs.contains(&job) {
             return;
         }
-        self.state.records.running.retain(|other| *other != job);
+        self.state.records.jobs.retain(|other| *other != job);
         let requested = self.state.records.requested_count;
-        if self.state.records.running.is_empty() && requested > 1 {
+        if self.state.records.jobs.is_empty() && requested > 1 {
             let text = format!("identification finished for {requested} conditions");
             self.notify_done(Message::new("identification-finished", text));
         }
         if let Some(records) = self.state.records.conditions.get_mut(&job.condition) {
             records.changed_since_fit = false;
-            records.found = Some((job, outcome));
+            records.latest = Some(EndedIdentification { job, outcome });
         }
     }
 

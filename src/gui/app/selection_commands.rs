@@ -21,7 +21,7 @@ impl GdcmApp {
             SelectionCommand::HoverCondition(condition) => {
                 display.selection.hovered_condition = Some(condition)
             }
-            SelectionCommand::Tell(words) => display.selection.pointed_words = Some(words),
+            SelectionCommand::ShowStatus(words) => display.selection.pointed_words = Some(words),
             SelectionCommand::Isolate(model) => {
                 let isolated = &mut display.selection.isolated;
                 *isolated = if isolated.as_ref() == Some(&model) {

@@ -13,7 +13,7 @@ use gdcm_study::stages::condition_curves::{CURVE_POINTS, curves_band};
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::views::need::Need;
-use crate::gui::views::{are_couplings_judged, couplings_job, overlay_job, view_content};
+use crate::gui::views::{couplings_job, must_assess_couplings, overlay_job, view_content};
 
 /// Returns the jobs needed by the visible views, by the overlaid variant, and to assess the
 /// couplings.
@@ -25,7 +25,7 @@ pub(super) fn needs(state: &State) -> Vec<Need> {
         }
     }
     needs.extend(overlay_job(state).map(Need::Variant));
-    if are_couplings_judged(state) {
+    if must_assess_couplings(state) {
         needs.push(Need::Couplings(couplings_job(state)));
     }
     needs

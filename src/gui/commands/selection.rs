@@ -14,7 +14,7 @@ pub enum SelectionCommand {
     /// Highlights a condition for this frame.
     HoverCondition(ConditionId),
     /// Describes the plot element under the pointer in the status bar, for this frame.
-    Tell(String),
+    ShowStatus(String),
     /// Shows only this model beside the representatives; a second command with the same model shows
     /// all models again.
     Isolate(ModelId),

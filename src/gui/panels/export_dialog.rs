@@ -236,7 +236,7 @@ fn foot_ui(
     in_line_ui(ui, left, false, |ui| {
         ui.label(palette.dim("Equivalent command line"));
         let text = RichText::new("Copy").color(palette.accent);
-        let copy = ui.add_enabled(form.set().is_ok(), Button::new(text).frame(false));
+        let copy = ui.add_enabled(form.export_set().is_ok(), Button::new(text).frame(false));
         named(copy, Role::Button, "Copy command line")
             .asks(OutputCommand::CopyExportCommand, commands);
     });

@@ -58,7 +58,7 @@ pub fn forms_ui(ctx: &Context, state: &mut State, palette: &Palette, commands: &
             FormKind::Shortcuts => shortcuts_ui(form, state),
             FormKind::Palette => command_palette_ui(form.ui, state, opens, palette, form.commands),
             FormKind::Reason => reason_ui(form, state),
-            FormKind::RecordDataset => record_dataset_ui(form, &mut state.records.wanted),
+            FormKind::RecordDataset => record_dataset_ui(form, &mut state.records.dataset_form),
             FormKind::About => about_ui(form),
             FormKind::Licences => licences_ui(form),
             _ => path_ui(form, kind, state),

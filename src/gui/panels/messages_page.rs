@@ -11,7 +11,7 @@ use crate::gui::widgets::palette::SMALL_SIZE;
 /// Draws all messages since the start.
 pub(super) fn messages_ui(form: &mut Form<'_, '_>, notices: &Notices) {
     form.title("Messages of this session");
-    let messages = notices.messages();
+    let messages = notices.kept();
     if messages.is_empty() {
         form.explain("No messages yet");
     }

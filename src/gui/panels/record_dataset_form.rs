@@ -4,14 +4,14 @@ use egui::{Label, ScrollArea, Ui};
 
 use super::form_parts::Form;
 use crate::gui::commands::records::RecordsCommand;
-use crate::gui::state::records::WantedDataset;
+use crate::gui::state::records::DatasetForm;
 use crate::gui::widgets::text_fields::{is_entered, text_field_ui};
 
 /// Maximum count of listed record columns.
 const MOST_COLUMNS: usize = 60;
 
 /// Draws the form, with the columns of the records and the problems found so far.
-pub(super) fn record_dataset_ui(form: &mut Form<'_, '_>, wanted: &mut WantedDataset) {
+pub(super) fn record_dataset_ui(form: &mut Form<'_, '_>, wanted: &mut DatasetForm) {
     form.title("Dataset from these records");
     form.explain(
         "For identification without a physics model. Separate channels by commas. If the file \

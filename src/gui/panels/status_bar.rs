@@ -216,13 +216,13 @@ fn background_words(background: &Background, records: &RecordsState) -> String {
 /// Formats, for example, "identifying condition 10, 40 %, 8 of 11 finished · correction unchanged
 /// until the fits are used".
 fn identification_words(records: &RecordsState, percent: usize) -> String {
-    let mut words = match records.under_way() {
+    let mut words = match records.running_job() {
         Some(job) => format!("identifying condition {}, {percent} %", job.condition),
         None => format!("identifying, {percent} %"),
     };
     let requested = records.requested_count;
     if requested > 1 {
-        let finished = requested.saturating_sub(records.running.len());
+        let finished = requested.saturating_sub(records.jobs.len());
         words.push_str(&format!(", {finished} of {requested} finished"));
     }
     words.push_str(" · correction unchanged until the fits are used");

@@ -13,7 +13,7 @@ use gdcm_study::decisions::setting_value::Value;
 use gdcm_study::jobs::trade_off_job::{TradeOff, TradeOffPoint};
 
 use crate::gui::state::window_state::State;
-use crate::gui::views::setting_controls::slider_place;
+use crate::gui::views::captioned_settings::slider_place;
 use crate::gui::widgets::controls::named;
 use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE, small};

@@ -36,7 +36,7 @@ pub struct FigureView {
     /// Subject of the figure; if this changes, all plots are fitted.
     subject: String,
     plots: Vec<PlotView>,
-    /// Ranges shown last on the linear axes that are fitted to the marks; see [`Self::hold_axes`].
+    /// Ranges shown last on the linear axes that are fitted to the marks; see [`Self::keep_axis_ranges`].
     shown_ranges: BTreeMap<AxisKey, Range>,
     question_menu: QuestionMenu,
 }
@@ -72,7 +72,7 @@ impl FigureView {
     ///
     /// Each panel has its own pair of ranges; axes that all plots share have the same. Logarithmic
     /// axes and axes with names keep the figure's ranges.
-    pub fn hold_axes(&mut self, figure: &mut Figure, update: AxisUpdate) {
+    pub fn keep_axis_ranges(&mut self, figure: &mut Figure, update: AxisUpdate) {
         let shared = figure.shared;
         let mut shown_ranges = BTreeMap::new();
         for plot in &mut figure.plots {
@@ -113,8 +113,8 @@ impl FigureView {
         }
     }
 
-    /// Sets the subject; fits all plots if the subject has changed.
-    pub fn set_subject(&mut self, subject: &str) {
+    /// Fits all plots if they show another subject than in the last call.
+    pub fn fit_if_subject_changed(&mut self, subject: &str) {
         if self.subject != subject {
             subject.clone_into(&mut self.subject);
             self.request_fit();

@@ -10,6 +10,7 @@ use gdcm_sysid::diagnostics::model_cautions::NOT_PREDICTED;
 use gdcm_sysid::identification::Identification;
 
 use super::condition_records::ConditionRecords;
+use super::records::has_started;
 use super::window_state::State;
 
 /// χ²/dof above which a fit is bad (docs/identification.md, M14.4).
@@ -54,11 +55,11 @@ pub struct FitCosts {
 }
 
 impl FitCosts {
-    pub fn of_identification(found: &Identification) -> Self {
+    pub fn new(identification: &Identification) -> Self {
         Self {
-            fitted: found.cost,
-            held_out: found.held_out_cost,
-            is_held_out_bad: found
+            fitted: identification.cost,
+            held_out: identification.held_out_cost,
+            is_held_out_bad: identification
                 .held_out_normalised
                 .is_some_and(|cost| cost > NOT_PREDICTED),
         }
@@ -82,7 +83,7 @@ pub struct BatchProgress {
     /// Completed share, 0 to 1.
     pub share: f32,
     /// Estimated time until the end \[s\]; `None` until the first condition is finished.
-    pub left_s: Option<f64>,
+    pub remaining_s: Option<f64>,
 }
 
 impl ConditionRecords {
@@ -117,10 +118,11 @@ impl State {
         let Some(records) = self.records.conditions.get(&condition) else {
             return false;
         };
-        let Some((job, _)) = &records.found else {
+        let Some(latest) = &records.latest else {
             return false;
         };
-        records.changed_since_fit || job.request.options.band != self.identified_band(condition)
+        records.changed_since_fit
+            || latest.job.request.options.band != self.identified_band(condition)
     }
 
     /// Returns a condition's records and fit; without loaded records, there are none.
@@ -134,8 +136,8 @@ impl State {
             return fit;
         };
         fit.counts = records.counts();
-        if let Some(found) = records.identification() {
-            fit.costs = Some(FitCosts::of_identification(found));
+        if let Some(identification) = records.identification() {
+            fit.costs = Some(FitCosts::new(identification));
         }
         fit.status = self.fit_status(condition, records);
         fit
@@ -145,20 +147,25 @@ impl State {
     /// then that of the latest identification, where changed settings come before its outcome.
     fn fit_status(&self, condition: ConditionId, records: &ConditionRecords) -> FitStatus {
         if let Some(job) = self.records.job_of(condition) {
-            if job.news().step.is_empty() {
+            if !has_started(job) {
                 return FitStatus::Queued;
             }
+            // One identification runs at a time, so this progress is that of the started job.
             let steps = self.results.background.identification.unwrap_or_default();
             return FitStatus::Running {
                 percent: steps.percent(),
             };
         }
-        match &records.found {
-            None => FitStatus::None,
-            Some(_) if self.is_fit_outdated(condition) => FitStatus::Outdated,
-            Some((_, Err(_))) => FitStatus::Failed,
-            Some((_, Ok(found))) => FitStatus::Finished {
-                cautions: found.cautions.len(),
+        let Some(latest) = &records.latest else {
+            return FitStatus::None;
+        };
+        if self.is_fit_outdated(condition) {
+            return FitStatus::Outdated;
+        }
+        match &latest.outcome {
+            Err(_) => FitStatus::Failed,
+            Ok(identification) => FitStatus::Finished {
+                cautions: identification.cautions.len(),
             },
         }
     }
@@ -170,14 +177,18 @@ impl State {
         let mut in_use = self.records.conditions_in_use();
         let shown = self.condition().id();
         in_use.sort_by_key(|id| *id != shown);
-        let mut open = in_use.clone();
-        open.retain(|id| {
+        let mut without_current_fit = in_use.clone();
+        without_current_fit.retain(|id| {
             !matches!(
                 self.condition_fit(*id).status,
                 FitStatus::Finished { .. } | FitStatus::Queued | FitStatus::Running { .. }
             )
         });
-        if open.is_empty() { in_use } else { open }
+        if without_current_fit.is_empty() {
+            in_use
+        } else {
+            without_current_fit
+        }
     }
 
     /// Returns the conditions whose current fit is not in the study; conditions whose
@@ -185,7 +196,7 @@ impl State {
     pub fn unused_fits(&self) -> Vec<ConditionId> {
         let mut unused = Vec::new();
         for (id, records) in &self.records.conditions {
-            let Some(found) = records.identification() else {
+            let Some(identification) = records.identification() else {
                 continue;
             };
             if self.is_fit_outdated(*id) || self.records.job_of(*id).is_some() {
@@ -194,7 +205,7 @@ impl State {
             let is_used = self
                 .study
                 .adopted_models()
-                .any(|(taken, models)| taken == *id && is_taken_from(models, found));
+                .any(|(adopting, models)| adopting == *id && are_models_of(models, identification));
             if !is_used {
                 unused.push(*id);
             }
@@ -207,10 +218,10 @@ impl State {
     /// ```text
     /// p      completed share of the running identification, 0 to 1
     /// share = (finished + p) / requested
-    /// time left = mean duration of the identifications so far · (unfinished − p)
+    /// remaining time = mean duration of the conditions' latest identifications · (unfinished − p)
     /// ```
     pub fn batch_progress(&self) -> Option<BatchProgress> {
-        let unfinished = self.records.running.len();
+        let unfinished = self.records.jobs.len();
         if unfinished == 0 {
             return None;
         }
@@ -220,11 +231,11 @@ impl State {
         let running_share = steps.done as f32 / steps.total.max(1) as f32;
         let mut durations_s = Vec::new();
         for records in self.records.conditions.values() {
-            if let Some((job, _)) = &records.found {
-                durations_s.extend(job.news().duration_s);
+            if let Some(latest) = &records.latest {
+                durations_s.extend(latest.job.news().duration_s);
             }
         }
-        let left_s = if finished == 0 || durations_s.is_empty() {
+        let remaining_s = if finished == 0 || durations_s.is_empty() {
             None
         } else {
             let mean_s = durations_s.iter().sum::<f64>() / durations_s.len() as f64;
@@ -234,19 +245,20 @@ impl State {
             finished,
             requested,
             share: (finished as f32 + running_share) / requested as f32,
-            left_s,
+            remaining_s,
         })
     }
 }
 
-/// Returns whether adopted models come from this identification.
-fn is_taken_from(taken: &AdoptedModels, found: &Identification) -> bool {
-    for model in &taken.models {
-        if *model == found.refined || *model == found.unrefined {
+/// Returns whether adopted models come from this identification: one of them is its refined or its
+/// unrefined model, or its measured response, which the engineer may adopt instead of a model.
+fn are_models_of(adopted: &AdoptedModels, identification: &Identification) -> bool {
+    for model in &adopted.models {
+        if *model == identification.refined || *model == identification.unrefined {
             return true;
         }
         if let Dynamics::Measured(response) = &model.dynamics
-            && found.measured.measured().as_ref() == Some(response)
+            && identification.measured.measured().as_ref() == Some(response)
         {
             return true;
         }

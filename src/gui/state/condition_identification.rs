@@ -1,7 +1,7 @@
 //! Identifying models from a condition's records: the job, the cautions about its result, and the
 //! models to adopt.
 //!
-//! `ConditionRecords::found` keeps the latest outcome with its job. `ConditionRecords::changed` is
+//! `ConditionRecords::latest` keeps the latest outcome with its job. `ConditionRecords::changed` is
 //! set once records or settings have changed; the cautions about the outcome are then no longer
 //! shown.
 //!
@@ -28,7 +28,7 @@ use crate::message_codes::layout_problem_code;
 impl ConditionRecords {
     /// Returns the latest identification if it succeeded.
     pub fn identification(&self) -> Option<&Arc<Identification>> {
-        self.found.as_ref()?.1.as_ref().ok()
+        self.latest.as_ref()?.outcome.as_ref().ok()
     }
 
     /// Creates the identification job for the current settings and a band \[rad/s\]; `channels` are
@@ -52,7 +52,7 @@ impl ConditionRecords {
         }
         let mut rows = Vec::new();
         for (_, row) in self.used_rows() {
-            rows.push(self.with_references(row, channels)?);
+            rows.push(self.record_with_references(row, channels)?);
         }
         let mut request = IdentificationRequest::from_used(rows.iter(), preparation, band)
             .map_err(|error| Message::new("no-identification", error.to_string()))?;
@@ -61,8 +61,8 @@ impl ConditionRecords {
         Ok(IdentifyJob::new(condition, request))
     }
 
-    /// Returns a record whose references are added after its inputs.
-    fn with_references(
+    /// Returns a record with the references as further inputs, after those of the dataset.
+    fn record_with_references(
         &self,
         row: &LaidOutRecord,
         channels: &RecordChannels,
@@ -115,7 +115,7 @@ impl ConditionRecords {
     /// none once records or settings have changed.
     pub fn cautions(&self) -> impl Iterator<Item = (Vec<usize>, CautionNote)> {
         let cautions = match self.identification() {
-            Some(found) if !self.changed_since_fit => found.cautions.as_slice(),
+            Some(identification) if !self.changed_since_fit => identification.cautions.as_slice(),
             _ => &[],
         };
         cautions.iter().map(|caution| {
@@ -124,7 +124,7 @@ impl ConditionRecords {
         })
     }
 
-    /// Returns short marks, with a caution sign, for the cautions with this code.
+    /// Returns the short forms of the cautions with this code, each after a caution sign.
     pub fn marks(&self, code: &'static str) -> impl Iterator<Item = String> {
         self.cautions()
             .filter(move |(_, note)| note.code == code)
@@ -148,8 +148,10 @@ impl ConditionRecords {
     /// Returns the number, counted from 0, that the record with this name had in the latest
     /// identification, whatever has changed since.
     pub fn record_of_name(&self, name: &str) -> Option<usize> {
-        let (job, _) = self.found.as_ref()?;
-        job.request
+        let latest = self.latest.as_ref()?;
+        latest
+            .job
+            .request
             .records
             .iter()
             .position(|record| record.name == name)
@@ -164,43 +166,45 @@ impl ConditionRecords {
         Some(fit.cost)
     }
 
-    /// Returns the identified models to put into the condition; `None` without a successful
+    /// Returns the identified models to put into the condition, those that the engineer has chosen,
+    /// with entries about the records that they come from; `None` without a successful
     /// identification.
     pub fn adopted(
         &self,
-        offered: AdoptionChoice,
+        choice: AdoptionChoice,
         channels: &RecordChannels,
     ) -> Option<Arc<AdoptedModels>> {
-        let found = self.identification()?;
+        let identification = self.identification()?;
         let mut entries = Vec::new();
-        for ((_, row), record_use) in self.used_rows().zip(&found.record_uses) {
+        for ((_, row), record_use) in self.used_rows().zip(&identification.record_uses) {
             entries.push(row.entry(record_use, channels));
         }
         Some(Arc::new(AdoptedModels::from_identification(
-            found, offered, entries,
+            identification,
+            choice,
+            entries,
         )))
     }
 
-    /// Returns these records from the history, to replace the records `now`. Models identified in
+    /// Returns these records from the history, to replace the present records. Models identified in
     /// the meantime are kept, but marked as results from other settings; the displayed row remains
     /// too.
-    pub(super) fn restored(mut self, now: Option<Self>) -> Self {
-        let Some(now) = now else {
+    pub(super) fn restored(mut self, present: Option<Self>) -> Self {
+        let Some(present) = present else {
             return self;
         };
-        if self.latest_job() != now.latest_job() {
-            self.changed_since_fit = now.found.is_some();
-            self.found = now.found;
+        if self.latest_job() != present.latest_job() {
+            self.changed_since_fit = present.latest.is_some();
+            self.latest = present.latest;
         }
-        self.choose(now.chosen);
-        self.is_chosen = now.is_chosen;
-        self.opening = now.opening;
+        self.choose(present.chosen);
+        self.is_chosen = present.is_chosen;
+        self.latest_search = present.latest_search;
         self
     }
 
     /// Returns the latest identification job.
     fn latest_job(&self) -> Option<&IdentifyJob> {
-        let (job, _) = self.found.as_ref()?;
-        Some(job)
+        Some(&self.latest.as_ref()?.job)
     }
 }

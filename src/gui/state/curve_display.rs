@@ -25,7 +25,7 @@ pub struct CurveDisplay {
     pub phase_error: PhaseErrorUnit,
     pub hidden_roles: BTreeSet<Role>,
     pub hidden_models: BTreeSet<ModelId>,
-    /// Whole turns by which the engineer shifted the phases upwards.
+    /// Whole turns by which the engineer shifted a curve's phases upwards.
     pub turns: BTreeMap<(ConditionId, Pair, CurveId), i32>,
     /// Frequency under the pointer, in any plot \[rad/s\].
     pub cursor: Option<f64>,
@@ -90,6 +90,7 @@ impl CurveDisplay {
                     self.hidden_roles.insert(role);
                 }
             }
+            // Asked again, shows the other roles again.
             CurveCommand::ShowRoleAlone(role) => {
                 let mut others = BTreeSet::from(Role::ALL);
                 others.remove(&role);
@@ -106,7 +107,7 @@ impl CurveDisplay {
                     Some(role)
                 };
             }
-            CurveCommand::ShowBands(wanted) => self.shows_bands = wanted,
+            CurveCommand::ShowBands(is_shown) => self.shows_bands = is_shown,
             CurveCommand::HideModel(model) => {
                 self.hidden_models.insert(model);
             }
@@ -118,14 +119,15 @@ impl CurveDisplay {
                 condition,
                 pair,
                 curve,
-                turns: by,
+                turns: change,
             } => {
                 let turns = self.turns.entry((condition, pair, curve)).or_default();
-                *turns = (*turns + by).clamp(-Self::MOST_TURNS, Self::MOST_TURNS);
+                *turns = (*turns + change).clamp(-Self::MOST_TURNS, Self::MOST_TURNS);
             }
             CurveCommand::PointAt(omega) => self.cursor = Some(omega),
             CurveCommand::PinCursor(omega) => {
                 self.pinned.push(omega);
+                // A third mark replaces the oldest.
                 if self.pinned.len() > Self::MOST_PINNED {
                     self.pinned.remove(0);
                 }
@@ -135,8 +137,8 @@ impl CurveDisplay {
                 self.crossings.clear();
             }
             CurveCommand::MarkCrossings(crossings) => self.crossings = crossings,
-            CurveCommand::ListValues(wanted) => self.lists_values = wanted,
-            CurveCommand::ShowMuad(wanted) => self.shows_muad = wanted,
+            CurveCommand::ListValues(is_shown) => self.lists_values = is_shown,
+            CurveCommand::ShowMuad(is_shown) => self.shows_muad = is_shown,
             CurveCommand::Select(models) => self.selected = models,
         }
     }

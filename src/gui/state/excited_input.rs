@@ -1,5 +1,8 @@
 //! The input that a flight record excites most, found by comparison with the condition's other
 //! records: an input's unit and trim have no influence.
+//!
+//! The record that excites the input in focus is displayed first, unless the engineer has chosen
+//! another.
 
 use std::sync::Arc;
 
@@ -7,10 +10,12 @@ use gdcm_model::dataset::condition::RecordKind;
 use gdcm_model::simulation::FlightRecord;
 use gdcm_sysid::records::LaidOutRecord;
 
-use super::condition_records::{ConditionRecords, Opening};
+use super::condition_records::{ConditionRecords, RowSearch};
 
-/// Minimum share at which an input counts as excited.
-const EXCITED: f64 = 0.5;
+/// Share of the largest standard deviation among the records from which an input counts as
+/// excited. A compromise: a larger share would drop smaller sweeps of the input, a smaller one
+/// would count records in which the pilot moves it only to compensate.
+const EXCITED_SHARE: f64 = 0.5;
 
 /// Excitation of the inputs by a record: each input's standard deviation, relative to the largest
 /// among the records, 0 to 1.
@@ -29,27 +34,33 @@ impl Excitation {
             .iter()
             .map(|flight| input_deviations(flight))
             .collect();
-        let mut greatest: Vec<f64> = Vec::new();
+        let mut largest_by_input: Vec<f64> = Vec::new();
         for record in &deviations {
-            greatest.resize(greatest.len().max(record.len()), 0.0);
-            for (most, deviation) in greatest.iter_mut().zip(record) {
-                *most = most.max(*deviation);
+            let inputs = largest_by_input.len().max(record.len());
+            largest_by_input.resize(inputs, 0.0);
+            for (largest, deviation) in largest_by_input.iter_mut().zip(record) {
+                *largest = largest.max(*deviation);
             }
         }
         let mut excitations = Vec::with_capacity(flights.len());
         for record in deviations {
             let mut shares = Vec::with_capacity(record.len());
-            for (deviation, most) in record.into_iter().zip(&greatest) {
-                shares.push(if *most > 0.0 { deviation / most } else { 0.0 });
+            for (deviation, largest) in record.into_iter().zip(&largest_by_input) {
+                let share = if *largest > 0.0 {
+                    deviation / largest
+                } else {
+                    0.0
+                };
+                shares.push(share);
             }
             excitations.push(Self(shares));
         }
         excitations
     }
 
-    /// Returns whether an input's share is at least `EXCITED`.
+    /// Returns whether an input's share is at least [`EXCITED_SHARE`].
     pub fn excites(&self, input: usize) -> bool {
-        self.share(input) >= EXCITED
+        self.share(input) >= EXCITED_SHARE
     }
 
     /// Returns an input's share, 0 to 1; 0 for an input that the record lacks.
@@ -59,15 +70,15 @@ impl Excitation {
 
     /// Returns the input in focus if it is excited, otherwise the most excited input; `None` if no
     /// input moves.
-    pub fn input(&self, focus: usize) -> Option<usize> {
+    pub fn excited_input(&self, focus: usize) -> Option<usize> {
         if self.excites(focus) {
             return Some(focus);
         }
         let mut most_excited = None;
-        let mut most = 0.0;
+        let mut largest_share = 0.0;
         for (input, share) in self.0.iter().enumerate() {
-            if *share > most {
-                most = *share;
+            if *share > largest_share {
+                largest_share = *share;
                 most_excited = Some(input);
             }
         }
@@ -86,12 +97,12 @@ fn input_deviations(flight: &FlightRecord) -> Vec<f64> {
             .collect();
         let count = samples.len().max(1) as f64;
         let mean = samples.iter().sum::<f64>() / count;
-        let square = samples
+        let variance = samples
             .iter()
             .map(|value| (value - mean).powi(2))
             .sum::<f64>()
             / count;
-        deviations.push(square.sqrt());
+        deviations.push(variance.sqrt());
     }
     deviations
 }
@@ -99,8 +110,8 @@ fn input_deviations(flight: &FlightRecord) -> Vec<f64> {
 /// A record that excites an input.
 #[derive(Clone, Copy, Debug)]
 struct Candidate {
-    /// The record's row.
-    index: usize,
+    /// Index of the record's row.
+    row: usize,
     is_sweep: bool,
     /// The input's share, 0 to 1.
     share: f64,
@@ -119,25 +130,26 @@ impl Candidate {
 }
 
 impl ConditionRecords {
-    /// Displays the fitted record that shows an input best (`row_of_input`), if any. Does nothing
-    /// if the engineer has chosen a record, or if the same search was made before.
+    /// Displays the fitted record that shows an input best (`best_row_for_input`), if any. Does
+    /// nothing if the engineer has chosen a record, or if the same search was made before.
     pub fn open_on_input(&mut self, input: usize) {
-        let opening = Opening {
+        let search = RowSearch {
             input,
-            records: self.rows.len(),
+            row_count: self.rows.len(),
         };
-        if self.is_chosen || self.opening == Some(opening) {
+        if self.is_chosen || self.latest_search == Some(search) {
             return;
         }
-        self.opening = Some(opening);
-        if let Some(index) = self.row_of_input(input) {
-            self.choose(index);
+        self.latest_search = Some(search);
+        if let Some(row) = self.best_row_for_input(input) {
+            self.choose(row);
         }
     }
 
-    /// Returns the fitted record that shows an input best, among those that excite it: a sweep if
-    /// there is one, and then the record with the largest share. `None` if no record excites it.
-    fn row_of_input(&self, input: usize) -> Option<usize> {
+    /// Returns the row of the fitted record that shows an input best, among those that excite it: a
+    /// sweep if there is one, and then the record with the largest share. `None` if no record
+    /// excites it.
+    fn best_row_for_input(&self, input: usize) -> Option<usize> {
         let rows: Vec<(usize, &LaidOutRecord)> = self.used_rows().collect();
         let flights: Vec<Arc<FlightRecord>> = rows
             .iter()
@@ -152,7 +164,7 @@ impl ConditionRecords {
                 continue;
             }
             let candidate = Candidate {
-                index,
+                row: index,
                 is_sweep: row.guess.kind == RecordKind::Sweep,
                 share: excitation.share(input),
             };
@@ -160,7 +172,7 @@ impl ConditionRecords {
                 best = Some(candidate);
             }
         }
-        best.map(|best| best.index)
+        best.map(|best| best.row)
     }
 }
 
@@ -190,7 +202,7 @@ mod tests {
         let excitations = Excitation::compare_records(&records);
         let inputs: Vec<[Option<usize>; 2]> = excitations
             .iter()
-            .map(|excitation| [0, 1].map(|focus| excitation.input(focus)))
+            .map(|excitation| [0, 1].map(|focus| excitation.excited_input(focus)))
             .collect();
         assert_eq!(
             inputs,

@@ -37,8 +37,8 @@ pub struct ExportPlanJob {
     pub uncertainty: Option<Arc<Uncertainty>>,
     pub source: ExportSource,
     pub set: ExportSet,
-    /// Number of failed attempts to write. It makes the job differ from the previous one, so that
-    /// the dry run is repeated: files in the folder may have changed.
+    /// Number of failed attempts to write ([`ExportForm::revision`]). Another number makes the job
+    /// differ from the previous one, so that the dry run is repeated.
     pub revision: u64,
 }
 
@@ -281,13 +281,14 @@ impl ExportForm {
         self.choices.formats.contains(REPORT)
     }
 
-    /// Returns the files that the choices request.
+    /// Returns the files that the choices request, as an export set: formats, folder, names and
+    /// contents.
     ///
     /// # Errors
     /// The first that is missing or wrong: a format or the report; the folder; the prefix, which
     /// may not contain a folder; a condition, if a format needs one; the Padé order; the
     /// breakpoints.
-    pub fn set(&self) -> Result<ExportSet, Message> {
+    pub fn export_set(&self) -> Result<ExportSet, Message> {
         let names = self.choices.formats.iter().map(String::as_str);
         let (formats, has_checksums) = ExportSet::formats_named(names);
         if formats.is_empty() && !self.has_report() {

@@ -26,7 +26,7 @@ impl State {
             analysis: self.results.analysis.clone()?,
             uncertainty: self.uncertainty().cloned(),
             source: form.source.clone()?,
-            set: form.set().ok()?,
+            set: form.export_set().ok()?,
             revision: form.revision,
         })
     }

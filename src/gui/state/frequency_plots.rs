@@ -1,4 +1,8 @@
 //! State that the frequency plots keep between frames.
+//!
+//! A view ([`BodeView`]) has a plot's axis ranges, and the transforms between values and screen
+//! positions. A response's *shape* is its magnitude and continuous phase, which take most of the
+//! time to compute and are therefore cached.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -12,31 +16,31 @@ use super::across_display::{AcrossDisplay, AcrossFit};
 use crate::gui::plot::overview_scene::OverviewView;
 use crate::gui::plot::{BodeCurve, BodeView};
 
-/// Axis ranges, transforms and cached curves for the frequency plots.
+/// Views and cached curves of the frequency plots.
 #[derive(Debug, Default)]
 pub struct FrequencyPlots {
-    /// Axis ranges and transforms in the Bode plot.
+    /// View of the Bode plot.
     pub bode: BodeView,
-    /// Axis ranges and transforms in the error plot (the models' ratios and phase differences).
+    /// View of the error plot (the models' magnitude ratios and phase differences).
     pub error: BodeView,
-    /// Models and conditions in the plots across conditions.
+    /// Models and conditions that the engineer has chosen for the plots across conditions.
     pub across_display: AcrossDisplay,
-    /// Axis ranges and transforms in the plot across conditions.
+    /// View of the plot across conditions.
     pub across: BodeView,
-    /// Axis ranges and transforms in the plot that shows the schedule's error.
+    /// View of the plot that shows the schedule's error across conditions.
     pub across_error: BodeView,
     /// Content to which the axes in both plots across conditions were last fitted.
     pub across_fitted: Option<AcrossFit>,
-    /// Response shapes across conditions, cached between frames.
+    /// Response shapes across conditions.
     pub across_shapes: AirspeedCache,
     pub overview: OverviewView,
-    /// Response shapes, cached between frames.
+    /// Response shapes in the displayed condition.
     pub shapes: BTreeMap<Pair, ResponseCache>,
-    /// Curves shown by the Bode plot.
+    /// Curves last drawn in the Bode plot.
     pub drawn: Vec<BodeCurve>,
-    /// The models' error curves, cached between frames.
+    /// The models' error curves in the displayed condition.
     pub errors: ErrorCache,
-    /// Curves shown by the error plot.
+    /// Curves last drawn in the error plot.
     pub drawn_errors: Vec<BodeCurve>,
 }
 
@@ -50,8 +54,8 @@ impl FrequencyPlots {
         }
     }
 
-    /// Requests that all axes, except those in the overview, be fitted to their curves in the next
-    /// frame.
+    /// Requests that all axes, also zoomed ones, be fitted to their curves in the next frame; the
+    /// overview's axes are not affected.
     pub fn fit(&mut self) {
         self.bode.request_fit();
         self.error.request_fit();

@@ -1,5 +1,9 @@
-//! Messages to the engineer in the top bar: toasts about completed and failed actions, and bars,
-//! which remain until they are answered.
+//! Messages to the engineer in the top bar.
+//!
+//! A *notice* reports a completed or a failed action. The session's list keeps it; the top bar
+//! shows it as a *toast* until its time is over, or until it is dismissed or resolved. A *message
+//! bar* is about the program or its files, and remains in the top bar until it is answered. Both
+//! are *messages*, numbered together, so that the top bar can show the newest first.
 
 use std::path::PathBuf;
 
@@ -105,15 +109,15 @@ pub struct Notice {
     pub action: Option<NoticeAction>,
     /// Time of day: "14:32".
     pub at: String,
-    /// Number in the session, from 0.
+    /// Number among the messages of the session, from 0.
     pub number: u64,
 }
 
 /// Time \[s\] for which a success is shown.
 pub const SHOWN_FOR_S: f64 = 6.0;
-/// Maximum number of messages kept in a session.
-const MOST_MESSAGES: usize = 500;
-/// Maximum number of toasts; older ones are in the message list only.
+/// Maximum number of notices kept in a session.
+const MOST_NOTICES: usize = 500;
+/// Maximum number of toasts; older notices are in the session's list only.
 const MOST_TOASTS: usize = 20;
 
 /// Notice in the top bar.
@@ -125,7 +129,7 @@ pub struct Toast {
     pub remaining_s: Option<f64>,
 }
 
-/// Message bar with its number among the notices of the session.
+/// Message bar with its number among the messages of the session.
 #[derive(Clone, Debug, PartialEq)]
 struct NumberedBar {
     number: u64,
@@ -139,21 +143,22 @@ pub enum TopMessage<'a> {
     Bar(&'a MessageBar),
 }
 
-/// Messages of the session, and those of them that the top bar shows.
+/// Notices of the session, and the toasts and message bars in the top bar.
 #[derive(Debug, Default)]
 pub struct Notices {
-    /// All messages that are kept, oldest first.
-    messages: Vec<Notice>,
+    /// The session's list, oldest first.
+    kept: Vec<Notice>,
     /// Toasts in the top bar, oldest first.
     toasts: Vec<Toast>,
     /// Message bars that are not answered yet, oldest first.
     bars: Vec<NumberedBar>,
-    /// Whether the list below the newest message is open.
+    /// Whether the list of toasts and bars below the newest message is open.
     pub is_list_open: bool,
-    /// Whether the pointer is on the newest message or on the list, which pauses the timers.
+    /// Whether the pointer is on the newest message or on the list, which pauses the toasts'
+    /// timers.
     pub is_held: bool,
     /// When [`Self::pass_time`] was last called \[s, window clock\].
-    seen_at_s: f64,
+    timed_at_s: f64,
     next_number: u64,
 }
 
@@ -169,9 +174,9 @@ impl Notices {
             }
             NoticeKind::Trouble => None,
         };
-        self.messages.push(notice.clone());
-        if self.messages.len() > MOST_MESSAGES {
-            self.messages.remove(0);
+        self.kept.push(notice.clone());
+        if self.kept.len() > MOST_NOTICES {
+            self.kept.remove(0);
         }
         self.toasts.push(Toast {
             notice,
@@ -201,7 +206,7 @@ impl Notices {
             .retain(|toast| toast.notice.action != Some(NoticeAction::Undo));
     }
 
-    /// Removes a notice from the top bar.
+    /// Removes a toast from the top bar; its notice remains in the session's list.
     pub fn dismiss(&mut self, number: u64) {
         self.toasts.retain(|toast| toast.notice.number != number);
         self.close_empty_list();
@@ -237,8 +242,8 @@ impl Notices {
     /// message or the list is open; removes toasts whose time is over. Returns the time \[s\] until
     /// the next one disappears; `None` if none has a timer.
     pub fn pass_time(&mut self, now_s: f64) -> Option<f64> {
-        let passed_s = (now_s - self.seen_at_s).max(0.0);
-        self.seen_at_s = now_s;
+        let passed_s = (now_s - self.timed_at_s).max(0.0);
+        self.timed_at_s = now_s;
         let is_held = std::mem::take(&mut self.is_held) || self.is_list_open;
         let mut next_s: Option<f64> = None;
         for toast in &mut self.toasts {
@@ -250,8 +255,11 @@ impl Notices {
             }
             next_s = Some(next_s.map_or(*remaining_s, |next_s| next_s.min(*remaining_s)));
         }
-        self.toasts
-            .retain(|toast| toast.remaining_s.is_none_or(|left_s| left_s > 0.0));
+        self.toasts.retain(|toast| {
+            toast
+                .remaining_s
+                .is_none_or(|remaining_s| remaining_s > 0.0)
+        });
         self.close_empty_list();
         next_s
     }
@@ -281,12 +289,12 @@ impl Notices {
 
     /// Returns the newest notice, whether or not it is still shown.
     pub fn newest(&self) -> Option<&Notice> {
-        self.messages.last()
+        self.kept.last()
     }
 
-    /// Returns the session's messages, oldest first.
-    pub fn messages(&self) -> &[Notice] {
-        &self.messages
+    /// Returns the session's notices, oldest first.
+    pub fn kept(&self) -> &[Notice] {
+        &self.kept
     }
 }
 
@@ -325,11 +333,7 @@ mod tests {
         assert_eq!(shown(&notices), ["failed"]);
         notices.pass_time(1e6);
         assert_eq!(shown(&notices), ["failed"]);
-        let codes: Vec<&str> = notices
-            .messages()
-            .iter()
-            .map(|message| message.code)
-            .collect();
+        let codes: Vec<&str> = notices.kept().iter().map(|message| message.code).collect();
         assert_eq!(codes, ["failed", "done"], "the session keeps both");
     }
 
@@ -353,7 +357,7 @@ mod tests {
         notices.add(adopted);
         notices.drop_obsolete_toasts();
         assert_eq!(shown(&notices), [""; 0]);
-        assert_eq!(notices.messages().len(), 2);
+        assert_eq!(notices.kept().len(), 2);
     }
 
     #[test]
@@ -391,10 +395,10 @@ mod tests {
     #[test]
     fn the_messages_of_a_long_session_are_bounded() {
         let mut notices = Notices::default();
-        for _ in 0..2 * MOST_MESSAGES {
+        for _ in 0..2 * MOST_NOTICES {
             notices.add(notice(NoticeKind::Trouble, Activity::Other, "again"));
         }
-        assert_eq!(notices.messages().len(), MOST_MESSAGES);
+        assert_eq!(notices.kept().len(), MOST_NOTICES);
         assert_eq!(notices.toasts().count(), MOST_TOASTS);
     }
 }

@@ -1,9 +1,9 @@
 //! The panels' tables (conditions, models, matrix, channels) as text, to be copied and saved.
 //!
-//! G and D are the gain and the delay that would match a response (M6: docs/method.md), J is the
-//! cost of its mismatch (M4). k and τ are a channel's gain and delay; the net gain of a response is
-//! the product of the gains of its two channels, its net delay the sum of their delays. A *held*
-//! (constrained) response has its net gain matched exactly, its delay as far as possible.
+//! G and D are the *wanted* gain and delay, which would match a response (M6: docs/method.md); J is
+//! the cost of its mismatch (M4). k and τ are a channel's gain and delay; the net gain of a
+//! response is the product of the gains of its two channels, its net delay the sum of their delays.
+//! A *held* (constrained) response has its net gain matched exactly, its delay as far as possible.
 //!
 //! A bundle is all physics models, or all identified models, in a condition; its representative
 //! stands for it in comparisons (M5).
@@ -193,23 +193,23 @@ fn title_with_bars(state: &State, kind: TableKind) -> String {
     title(state, &subject)
 }
 
-/// Half-widths of a value's error bar: relative \[%\], or \[ms\] for delays.
+/// Half-widths of a value's error bar: relative \[%\], or \[ms\] for delays; `None` without a bar.
 #[derive(Clone, Copy, Default)]
 struct HalfWidths {
     whole: Option<f64>,
-    /// Half-width due to the identification alone (uncertainty for a fixed physics model); drawn as
-    /// the inner bar.
-    inner: Option<f64>,
+    /// Half-width due to the identification alone: the uncertainty for a fixed physics model.
+    from_identification: Option<f64>,
 }
 
 impl HalfWidths {
+    /// Returns the half-widths for a gain or a delay (`scalar`).
     fn new(uncertainty: &ValueUncertainty<'_>, scalar: Scalar) -> Self {
-        let Some((bar, level)) = uncertainty.error_bar(scalar) else {
+        let Some((bar, confidence_level)) = uncertainty.error_bar(scalar) else {
             return Self::default();
         };
         Self {
-            whole: displayed_half(scalar, bar.half_width(level)),
-            inner: displayed_half(scalar, bar.inner_half_width(level)),
+            whole: displayed_half(scalar, bar.half_width(confidence_level)),
+            from_identification: displayed_half(scalar, bar.inner_half_width(confidence_level)),
         }
     }
 }
@@ -250,16 +250,19 @@ fn response_row(state: &State, pair: Pair) -> Row {
     let values = [
         ("G [-]", shown.and_then(|shown| shown.delta_gain(pair))),
         ("G ± [%]", gain.whole),
-        ("G ± of identification [%]", gain.inner),
+        ("G ± of identification [%]", gain.from_identification),
         ("D [ms]", delta_delay_s.map(s_to_ms)),
         ("D ± [ms]", delay.whole),
-        ("D ± of identification [ms]", delay.inner),
+        ("D ± of identification [ms]", delay.from_identification),
         (
             "net gain [-]",
             shown.map(|shown| shown.correction.net_gain(pair)),
         ),
         ("net gain ± [%]", net_gain.whole),
-        ("net gain ± of identification [%]", net_gain.inner),
+        (
+            "net gain ± of identification [%]",
+            net_gain.from_identification,
+        ),
         (
             "net delay [ms]",
             shown.map(|shown| s_to_ms(shown.correction.net_delay_s(pair))),
@@ -304,13 +307,13 @@ fn channel_row(state: &State, channel: Channel) -> Row {
     let values = [
         ("k [-]", correction.map(|found| found.gain(channel))),
         ("k ± [%]", gain.whole),
-        ("k ± of identification [%]", gain.inner),
+        ("k ± of identification [%]", gain.from_identification),
         (
             "τ [ms]",
             correction.map(|found| s_to_ms(found.delay_s(channel))),
         ),
         ("τ ± [ms]", delay.whole),
-        ("τ ± of identification [ms]", delay.inner),
+        ("τ ± of identification [ms]", delay.from_identification),
     ];
     let mut row = vec![
         ("side", side.to_owned()),

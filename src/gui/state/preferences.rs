@@ -64,7 +64,7 @@ impl Preferences {
         display.layout.arrangement = self
             .arrangement
             .clone()
-            .and_then(Arrangement::if_valid)
+            .and_then(Arrangement::adapted)
             .unwrap_or_default();
         display.layout.opens_with = self.opens_with;
         display.layout.left_open = self.left_open;

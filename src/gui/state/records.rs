@@ -14,8 +14,9 @@ use gdcm_study::results::time_histories::HistoryRecords;
 use gdcm_sysid::records::LaidOutRecord;
 
 pub use super::condition_records::ConditionRecords;
-pub use super::records_page::{RecordsPage, TimeRole};
-pub use super::wanted_dataset::WantedDataset;
+pub use super::dataset_form::DatasetForm;
+pub use super::records_page::RecordsPage;
+pub use super::time_role::TimeRole;
 
 /// The records before or after an edit, which an undo or redo step restores. Only the conditions
 /// changed by the edit are included.
@@ -36,6 +37,11 @@ pub enum RecordsFold {
     Columns,
     /// Settings for identifying the displayed condition.
     Settings,
+}
+
+/// Returns whether a job runs: a running job reports its steps, a waiting job has none.
+pub fn has_started(job: &IdentifyJob) -> bool {
+    !job.news().step.is_empty()
 }
 
 /// State behind the Records view. Not saved: records stay in their files.
@@ -64,13 +70,13 @@ pub struct RecordsState {
     /// Paths to the files read, by SHA-256, to recognise changed files.
     pub read_from: BTreeMap<String, PathBuf>,
     /// Form for a dataset to be made from the added records.
-    pub wanted: WantedDataset,
+    pub dataset_form: DatasetForm,
     /// Name under which the files being read are displayed.
     pub reading: Option<String>,
     /// Messages about unreadable content.
     pub faults: Vec<String>,
     /// Running and waiting identification jobs, ordered as requested.
-    pub running: Vec<IdentifyJob>,
+    pub jobs: Vec<IdentifyJob>,
     /// Number of conditions requested since the queue was last empty.
     pub requested_count: usize,
 }
@@ -89,24 +95,25 @@ impl RecordsState {
         }
     }
 
-    /// Restores the records before or after an edit; returns the replaced records.
-    pub fn exchange(&mut self, before: RecordsSnapshot) -> RecordsSnapshot {
-        let mut now = RecordsSnapshot::default();
-        for (id, records) in before.conditions {
+    /// Restores the records from a snapshot; returns a snapshot of the replaced records, which the
+    /// opposite step (redo or undo) restores.
+    pub fn exchange(&mut self, snapshot: RecordsSnapshot) -> RecordsSnapshot {
+        let mut replaced = RecordsSnapshot::default();
+        for (id, records) in snapshot.conditions {
             let present = self.conditions.remove(&id);
             if let Some(records) = records {
                 self.conditions
                     .insert(id, records.restored(present.clone()));
             }
-            now.conditions.insert(id, present);
+            replaced.conditions.insert(id, present);
         }
-        now.sources = before
+        replaced.sources = snapshot
             .sources
             .map(|sources| std::mem::replace(&mut self.sources, sources));
-        now.unassigned = before
+        replaced.unassigned = snapshot
             .unassigned
             .map(|unassigned| std::mem::replace(&mut self.unassigned, unassigned));
-        now
+        replaced
     }
 
     /// Adds a record without a condition; returns false if the same record was added before.
@@ -164,28 +171,28 @@ impl RecordsState {
 
     /// Adds an identification job; it replaces a waiting or running job for the same condition.
     pub fn request_job(&mut self, job: IdentifyJob) {
-        let before = self.running.len();
-        self.running
-            .retain(|other| other.condition != job.condition);
-        if self.running.len() == before {
+        let earlier_count = self.jobs.len();
+        self.jobs.retain(|other| other.condition != job.condition);
+        let replaces_none = self.jobs.len() == earlier_count;
+        if replaces_none {
             self.requested_count += 1;
         }
-        self.running.push(job);
+        self.jobs.push(job);
     }
 
     /// Returns the running or waiting job for a condition.
     pub fn job_of(&self, condition: ConditionId) -> Option<&IdentifyJob> {
-        self.running.iter().find(|job| job.condition == condition)
+        self.jobs.iter().find(|job| job.condition == condition)
     }
 
     /// Returns the running job, once it has reported its first step.
-    pub fn under_way(&self) -> Option<&IdentifyJob> {
-        self.running.iter().find(|job| !job.news().step.is_empty())
+    pub fn running_job(&self) -> Option<&IdentifyJob> {
+        self.jobs.iter().find(|job| has_started(job))
     }
 
     /// Returns the identification jobs, the displayed condition first.
     pub fn by_urgency(&self, shown: ConditionId) -> Vec<IdentifyJob> {
-        let mut jobs = self.running.clone();
+        let mut jobs = self.jobs.clone();
         jobs.sort_by_key(|job| job.condition != shown);
         jobs
     }

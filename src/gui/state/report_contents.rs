@@ -13,12 +13,14 @@ use gdcm_study::{Analysis, Engine};
 /// Results, records and names from which a report is made.
 #[derive(Debug)]
 pub struct ReportInputs {
-    /// Displayed analysis from which `analysis` was made.
+    /// Displayed analysis, from which `analysis` was made.
     pub shown: Arc<Analysis>,
-    /// Analysis with the present requirements.
+    /// The same results with the study's present requirements; the displayed analysis does not
+    /// depend on the requirements and may have older ones.
     pub analysis: Arc<Analysis>,
     /// Flight records in use, for the time-history comparison.
     pub records: Vec<HistoryRecords>,
+    /// Poles identified from flight records in this session.
     pub known: IdentifiedPoles,
     pub source: ReportSource,
 }

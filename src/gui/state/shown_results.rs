@@ -4,26 +4,9 @@
 //! [`Results`](super::computed_results::Results) keeps the last output from each kind of job,
 //! together with the job. A newer output replaces it only when its job is complete. Until then the
 //! methods below return the older output, so that a view does not become empty at each change, but
-//! only if it answers the displayed question. They return `None` otherwise:
-//!
-//! | result                         | must belong to                              | settings    |
-//! |--------------------------------|---------------------------------------------|-------------|
-//! | `analysis`                     | displayed dataset                           | may be older |
-//! | `outcome`, `shown`             | displayed dataset and condition             | may be older |
-//! | `toggles`                      | displayed result                            | its own     |
-//! | `responses`                    | displayed dataset and condition             | may be older |
-//! | `modes`                        | displayed condition                         | independent |
-//! | `across`, `requirements`       | displayed dataset                           | may be older |
-//! | `assessment`                   | displayed dataset and choice                | may be older |
-//! | `test_answers`                 | displayed dataset, condition and input      | may be older |
-//! | `record_history`               | condition and record of the requested job   | may be older |
-//! | `time_histories`               | the held-out records                        | may be older |
-//! | `couplings`                    | displayed dataset and assessed couplings    | may be older |
-//! | `physics`                      | displayed dataset and assessed parameters   | may be older |
-//! | `uncertainty`                  | newest analysis                             | its own     |
-//! | `value_uncertainty`            | newest analysis, not older than `shown`     | its own     |
-//! | `painted_uncertainty`          | displayed dataset                           | may be older |
-//! | `trade_off`                    | displayed condition                         | may be older |
+//! only if it answers the displayed question: each method checks dataset, condition and choices.
+//! The settings may be older, except for results that explain others (`toggles`, `uncertainty`,
+//! `value_uncertainty`), which must belong to exactly these. Otherwise the methods return `None`.
 //!
 //! The displayed condition's result arrives before the others (`Results::first`). It is then newer
 //! than the analysis; [`State::others_are_older`] says so, and views show a notice.
@@ -57,7 +40,8 @@ use super::window_state::State;
 use crate::message::Message;
 
 impl State {
-    /// Returns the newest analysis, if it belongs to the displayed dataset.
+    /// Returns the newest analysis (the results of all conditions), if it belongs to the displayed
+    /// dataset.
     pub fn analysis(&self) -> Option<&Analysis> {
         let analysis = self.results.analysis.as_deref()?;
         if !self.is_shown_dataset(&analysis.study.dataset) {
@@ -66,7 +50,8 @@ impl State {
         Some(analysis)
     }
 
-    /// Returns the newest outcome for the displayed condition and dataset.
+    /// Returns the newest outcome for the displayed condition and dataset: its result, or why it
+    /// failed.
     pub fn outcome(&self) -> Option<&Result<ConditionAnalysis, ConditionFailure>> {
         let condition = self.condition().id();
         if let Some(first) = &self.results.first
@@ -108,8 +93,8 @@ impl State {
             .collect()
     }
 
-    /// Returns the cost of constraining or releasing each response, if it belongs to the displayed
-    /// result.
+    /// Returns the cost of toggling the constraint on each response (constraining or releasing it),
+    /// if it belongs to the displayed result.
     pub fn toggles(&self) -> Option<&Toggles> {
         let (job, toggles) = self.results.toggles.as_ref()?;
         if !job.is_of(self.shown()?) {
@@ -212,8 +197,8 @@ impl State {
         &self,
         job: &RecordHistoryJob,
     ) -> Option<&Result<Arc<RecordHistory>, NoRecordHistory>> {
-        let (known, history) = self.results.record_history.as_ref()?;
-        if known.condition != job.condition || known.record != job.record {
+        let (latest_job, history) = self.results.record_history.as_ref()?;
+        if latest_job.condition != job.condition || latest_job.record != job.record {
             return None;
         }
         Some(history)
@@ -232,9 +217,8 @@ impl State {
     /// Returns the benefit of the couplings, whether or not they are in use; until it is ready,
     /// that under older settings.
     pub fn couplings(&self) -> Option<&AssessedCouplings> {
-        let (known, assessed) = self.results.couplings.as_ref()?;
-        if !self.is_shown_dataset(&known.study.dataset)
-            || known.couplings != self.assessed_couplings()
+        let (job, assessed) = self.results.couplings.as_ref()?;
+        if !self.is_shown_dataset(&job.study.dataset) || job.couplings != self.assessed_couplings()
         {
             return None;
         }
@@ -254,9 +238,8 @@ impl State {
     /// applied; until it is ready, that under older settings. The inner `None` means that the study
     /// selects no parameters.
     pub fn physics(&self) -> Option<&Option<AssessedPhysics>> {
-        let (known, assessed) = self.results.physics.as_ref()?;
-        if !self.is_shown_dataset(&known.study.dataset) || known.physics != self.assessed_physics()
-        {
+        let (job, assessed) = self.results.physics.as_ref()?;
+        if !self.is_shown_dataset(&job.study.dataset) || job.physics != self.assessed_physics() {
             return None;
         }
         Some(assessed)

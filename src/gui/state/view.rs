@@ -292,7 +292,8 @@ const LEADS: ViewFacts = ViewFacts {
 
 const EVIDENCE: ViewFacts = ViewFacts {
     name: "Evidence",
-    purpose: "Net gains: sources of their scatter, significant differences between airspeeds, and variables that the schedule needs",
+    purpose: "Net gains: sources of their scatter, significant differences between airspeeds, \
+        and variables that the schedule needs",
     group: Some(ViewGroup::Schedule),
     takes_dock: true,
     is_of_all_conditions: true,

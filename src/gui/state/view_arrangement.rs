@@ -10,8 +10,8 @@ use super::view::{View, ViewGroup};
 pub struct Arrangement {
     /// Group in front.
     group: ViewGroup,
-    /// View shown by each group, indexed by `ViewGroup as usize`. The field's name is part of the
-    /// stored preferences.
+    /// View shown by each group, indexed by `ViewGroup as usize`. The name of this field is part of
+    /// the preferences file.
     of_groups: [View; 4],
     /// View beside the view in front.
     beside: Option<View>,
@@ -121,14 +121,14 @@ impl Arrangement {
         }
     }
 
-    /// Returns the view `by` places further in the group in front, wrapping around.
-    pub fn neighbour(&self, by: isize) -> View {
+    /// Returns the view `steps` places further in the group in front, wrapping around.
+    pub fn neighbour(&self, steps: isize) -> View {
         let views: Vec<View> = self.group.views().collect();
         let here = views
             .iter()
             .position(|view| *view == self.view())
             .unwrap_or(0);
-        views[(here as isize + by).rem_euclid(views.len() as isize) as usize]
+        views[(here as isize + steps).rem_euclid(views.len() as isize) as usize]
     }
 
     /// Returns whether a view is in front, beside the view in front, or in the dock, whether or not
@@ -142,9 +142,10 @@ impl Arrangement {
     /// 1. a view beside that is now a dock page is shown in the dock;
     /// 2. a group that shows what is now a dock page shows its first view; if it was in front, the
     ///    dock shows the page, and the first group comes to the front;
-    /// 3. a group that shows a view that is now in another group: `None`;
+    /// 3. a group that shows a view that is now in another group makes the arrangement unusable:
+    ///    `None`;
     /// 4. a dock that shows no dock page shows the net gain.
-    pub fn if_valid(mut self) -> Option<Self> {
+    pub fn adapted(mut self) -> Option<Self> {
         // Step 1.
         if let Some(page) = self.beside
             && page.is_dock_page()
@@ -253,12 +254,12 @@ mod tests {
         let text = r#"{"group": "Schedule", "of_groups": ["Bode", "Records", "Leads", "Compare"],
             "beside": "NetGain", "dock": "NetGain", "dock_open": false}"#;
         let stored: Arrangement = serde_json::from_str(text).unwrap();
-        let read = stored.if_valid().expect("each view has its place");
+        let read = stored.adapted().expect("each view has its place");
         assert_eq!((read.view(), read.beside()), (View::Bode, None));
         assert_eq!(read.dock(), Some(View::Leads));
         let text = r#"{"group": "Judge", "of_groups": ["Error", "Poles", "NetGain", "Compare"]}"#;
         let stored: Arrangement = serde_json::from_str(text).unwrap();
-        let mut read = stored.if_valid().expect("each view has its place");
+        let mut read = stored.adapted().expect("each view has its place");
         assert_eq!(read.view(), View::Compare);
         read.show_group(ViewGroup::Schedule);
         assert_eq!(read.view(), View::Channels);
@@ -273,13 +274,13 @@ mod tests {
         assert_eq!(
             serde_json::from_str::<Arrangement>(&text)
                 .unwrap()
-                .if_valid(),
+                .adapted(),
             Some(arrangement)
         );
         let mixed = Arrangement {
             of_groups: [View::Poles; 4],
             ..Arrangement::default()
         };
-        assert_eq!(mixed.if_valid(), None);
+        assert_eq!(mixed.adapted(), None);
     }
 }

@@ -43,10 +43,10 @@ pub enum ComparePage {
     Effects,
 }
 
+/// A page of a view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ViewPage {
-    /// Overview with (`true`) or without phases.
-    Overview(bool),
+    Overview { has_phases: bool },
     Poles(PolesPage),
     Couplings(CouplingsPage),
     Evidence(EvidencePage),
@@ -57,8 +57,10 @@ impl ViewPage {
     /// Returns the page's name and purpose.
     pub fn words(self) -> PageWords {
         let [name, purpose] = match self {
-            Self::Overview(false) => ["Magnitude", "Magnitude of every response"],
-            Self::Overview(true) => ["Magnitude and phase", "Phase below each magnitude"],
+            Self::Overview { has_phases: false } => ["Magnitude", "Magnitude of every response"],
+            Self::Overview { has_phases: true } => {
+                ["Magnitude and phase", "Phase below each magnitude"]
+            }
             Self::Poles(PolesPage::Plane) => ["s-plane", "Poles of every model in the s-plane"],
             Self::Poles(PolesPage::Modes) => {
                 ["Modes", "Table of the modes, followed from model to model"]
@@ -96,7 +98,7 @@ impl ViewPage {
             ],
         };
         let short_name = match self {
-            Self::Overview(true) => "With phase",
+            Self::Overview { has_phases: true } => "With phase",
             _ => name,
         };
         PageWords {
@@ -107,6 +109,7 @@ impl ViewPage {
     }
 }
 
+/// Page in front for each view whose pages need no other state.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ViewPages {
     pub poles: PolesPage,

@@ -87,6 +87,7 @@ impl State {
             .next()
             .unwrap_or_default();
         let condition = study.dataset.conditions()[0].id();
+        // Responses that are or have been constrained in this session.
         let once_held = study.settings.constrained.marked().collect();
         let mut display = Display::default();
         display.selection.condition = condition;

@@ -1,19 +1,19 @@
 //! Plots across conditions: the response in focus in every condition, coloured by airspeed, and
-//! beside it the schedule error (scheduled minus identified response). The chips are in
-//! `across_chips`, the values at the pointer in `across_readout`. A *role* says which of a
-//! condition's models a curve shows: nominal, identified, scheduled and so on. The *optima* are the
-//! conditions' own corrections, before the schedule smooths them over airspeed.
+//! beside it the schedule error (scheduled minus identified response). The curves are in
+//! `across_curves`, the chips in `across_chips`, the values at the pointer in `across_readout`.
+//!
+//! A *role* says which of a condition's models a curve shows: nominal, identified, scheduled and so
+//! on. The *optima* are the conditions' own corrections, before the schedule smooths them over
+//! airspeed.
 
 use egui::{Rect, Ui, UiBuilder, pos2, vec2};
 
 use gdcm_model::dataset::ConditionId;
 use gdcm_model::number_format::counted;
-use gdcm_plot::figure::responses::{AirspeedCurves, AirspeedResponse};
-use gdcm_study::jobs::across_job::AcrossJob;
-use gdcm_study::stages::condition_curves::display_band;
 
 use super::PageEntry;
 use super::across_chips::across_chips_ui;
+use super::across_curves::{across_curves, fit_across};
 use super::across_readout::AcrossReadout;
 use super::model_error;
 use crate::gui::commands::command::Command;
@@ -25,13 +25,11 @@ use crate::gui::plot::pointed_curve_text::pointed_curve_text;
 use crate::gui::plot::quantity::BodeQuantity;
 use crate::gui::plot::readout_strip::{STRIP_HEIGHT, readout_strip_ui};
 use crate::gui::plot::{BodeCurve, BodeScene, BodeView, CurveId, Pane, bode_ui};
-use crate::gui::state::across_display::{AcrossConditions, AcrossFit, AcrossPage};
+use crate::gui::state::across_display::{AcrossConditions, AcrossPage};
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::{DropDown, PageWords};
 use crate::gui::widgets::palette::Palette;
 
-/// Number of frequencies on each curve.
-const POINTS: usize = 300;
 /// Share of the width for the responses, beside the errors.
 const RESPONSE_PART: f32 = 0.62;
 /// Gap between responses and errors \[pt\].
@@ -153,8 +151,8 @@ pub fn across_view_ui(
     fit_across(state);
     // Step 2.
     let area = ui.available_rect_before_wrap();
-    let chips = across_chips_ui(ui, area, state, palette, commands);
-    let plots = area.with_min_y(area.top() + chips);
+    let chips_height = across_chips_ui(ui, area, state, palette, commands);
+    let plots = area.with_min_y(area.top() + chips_height);
     // Step 3.
     let frequency = &mut state.display.frequency;
     let pointed = frequency
@@ -205,7 +203,7 @@ pub fn across_view_ui(
     };
     // Step 4.
     let areas = PlotAreas::new(plots, state);
-    let mut strip = None;
+    let mut readout_strip = None;
     if let Some(area) = areas.responses {
         let plot = AcrossPlot {
             state,
@@ -213,7 +211,7 @@ pub fn across_view_ui(
             palette,
         };
         plot.ui(ui, area, &mut responses, commands);
-        strip = readout_place(&responses, strip);
+        readout_strip = readout_area(&responses, readout_strip);
     } else {
         responses.pointed_omega = None;
     }
@@ -224,7 +222,7 @@ pub fn across_view_ui(
             palette,
         };
         plot.ui(ui, area, &mut errors, commands);
-        strip = readout_place(&errors, strip);
+        readout_strip = readout_area(&errors, readout_strip);
     } else {
         errors.pointed_omega = None;
     }
@@ -239,7 +237,7 @@ pub fn across_view_ui(
         band: (band.min(), band.max()),
         unit: state.display.curves.unit,
     };
-    if let (Some(strip), Some(readout)) = (strip, source.readout(pointed)) {
+    if let (Some(strip), Some(readout)) = (readout_strip, source.readout(pointed)) {
         readout_strip_ui(ui, strip, &readout, palette);
     }
     ui.advance_cursor_after_rect(area);
@@ -260,21 +258,21 @@ fn error_message(state: &State) -> String {
 }
 
 /// Returns the read-out's area: the strip between this plot's magnitudes and phases, if it is high
-/// enough, united with `before`, the strip in another plot. `None` if neither exists, or if this
-/// plot has not been laid out.
-fn readout_place(view: &BodeView, before: Option<Rect>) -> Option<Rect> {
+/// enough, united with the strip in the other plot, if that is drawn too. `None` if neither exists,
+/// or if this plot has not been laid out.
+fn readout_area(view: &BodeView, other_strip: Option<Rect>) -> Option<Rect> {
     let magnitude = *view.transform(Pane::Magnitude)?.frame();
     let phase = *view.transform(Pane::Phase)?.frame();
     let top = magnitude.bottom() + READOUT_GAP;
     if phase.top() - magnitude.bottom() < STRIP_HEIGHT + 2.0 * READOUT_GAP {
-        return before;
+        return other_strip;
     }
     let strip = Rect::from_min_size(
         pos2(magnitude.left(), top),
         vec2(magnitude.width(), STRIP_HEIGHT),
     );
-    Some(match before {
-        Some(before) => before.union(strip),
+    Some(match other_strip {
+        Some(other_strip) => other_strip.union(strip),
         None => strip,
     })
 }
@@ -305,20 +303,22 @@ impl AcrossPlot<'_> {
         }
         let unit = self.state.display.curves.unit;
         if let Some(words) = pointed_curve_text(view, scene.curves, scene.quantity, unit) {
-            commands.push(SelectionCommand::Tell(words).into());
+            commands.push(SelectionCommand::ShowStatus(words).into());
         }
     }
+}
+
+/// Conditions at the same airspeed, whose curves share a name.
+struct AirspeedGroup {
+    airspeed_kt: f64,
+    conditions: Vec<ConditionId>,
+    name: GroupName,
 }
 
 /// Returns the names in the right margin, where the curves end: one for each airspeed, in
 /// increasing order, with the condition count if it has several: "140 kt × 2". A name has the
 /// colour of its first curve.
 fn group_names(state: &State, curves: &[BodeCurve]) -> Vec<GroupName> {
-    struct AirspeedGroup {
-        airspeed_kt: f64,
-        conditions: Vec<ConditionId>,
-        name: GroupName,
-    }
     let mut groups: Vec<AirspeedGroup> = Vec::new();
     for curve in curves {
         let CurveId::OfCondition(id, _) = curve.id else {
@@ -328,10 +328,10 @@ fn group_names(state: &State, curves: &[BodeCurve]) -> Vec<GroupName> {
             continue;
         };
         let airspeed_kt = condition.flight_state().airspeed_kt;
-        let place = groups
+        let known = groups
             .iter()
-            .position(|known| known.airspeed_kt == airspeed_kt);
-        let place = place.unwrap_or_else(|| {
+            .position(|group| group.airspeed_kt == airspeed_kt);
+        let group_index = known.unwrap_or_else(|| {
             groups.push(AirspeedGroup {
                 airspeed_kt,
                 conditions: Vec::new(),
@@ -343,7 +343,7 @@ fn group_names(state: &State, curves: &[BodeCurve]) -> Vec<GroupName> {
             });
             groups.len() - 1
         });
-        let group = &mut groups[place];
+        let group = &mut groups[group_index];
         if !group.conditions.contains(&id) {
             group.conditions.push(id);
         }
@@ -364,66 +364,6 @@ fn group_names(state: &State, curves: &[BodeCurve]) -> Vec<GroupName> {
         names.push(name);
     }
     names
-}
-
-/// Fits the value axes after another response, condition, set of roles or of conditions has been
-/// selected: in each frame, until its curves are available.
-fn fit_across(state: &mut State) {
-    let display = &state.display.frequency.across_display;
-    let wanted = AcrossFit {
-        pair: state.display.selection.pair,
-        condition: state.condition().id(),
-        roles: display.roles.clone(),
-        conditions: display.conditions,
-    };
-    if state.display.frequency.across_fitted.as_ref() == Some(&wanted) {
-        return;
-    }
-    state.display.frequency.across.request_refit();
-    state.display.frequency.across_error.request_refit();
-    // Until the new curves are available, the previous curves are drawn, and the fit must be
-    // repeated.
-    if let Some((job, _)) = &state.results.across
-        && job.models == across_job(state).models
-    {
-        state.display.frequency.across_fitted = Some(wanted);
-    }
-}
-
-/// Returns the job that computes the models' responses in each condition.
-pub fn across_job(state: &State) -> AcrossJob {
-    let grid = (display_band(state.study.settings.band), POINTS);
-    AcrossJob::for_conditions(&state.study.dataset, state.analysis(), grid)
-}
-
-/// Returns the curves for the response in focus in each shown condition, those of the displayed
-/// condition and of the one under the pointer highlighted; empty until the responses are available.
-pub fn across_curves(state: &mut State) -> AirspeedCurves {
-    let Some(responses) = state.across().cloned() else {
-        return AirspeedCurves::default();
-    };
-    let mut cached = std::mem::take(&mut state.display.frequency.across_shapes);
-    let display = &state.display.frequency.across_display;
-    let response = AirspeedResponse {
-        dataset: state.dataset(),
-        analysis: state.analysis(),
-        roles: &display.roles,
-        conditions: &display.conditions.of_study(&state.study),
-        pair: state.display.selection.pair,
-        band: state.study.settings.band,
-        responses: &responses,
-    };
-    let mut drawn = response.curves(&mut cached);
-    let selected = state.condition().id();
-    let hovered = state.display.selection.hovered_condition;
-    for curve in drawn.responses.iter_mut().chain(&mut drawn.errors) {
-        if let CurveId::OfCondition(id, _) = curve.id {
-            curve.highlighted = id == selected || Some(id) == hovered;
-        }
-        curve.detail.push_str(" · click to show the condition");
-    }
-    state.display.frequency.across_shapes = cached;
-    drawn
 }
 
 /// Returns the text beside the title: "all 11 conditions", or "9 of 11 conditions" if only those in

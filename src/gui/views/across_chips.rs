@@ -14,8 +14,9 @@ use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
 /// Length of a curve sample in a chip \[pt\].
 const SAMPLE: f32 = 18.0;
-/// Airspeed whose colour the samples have: mid-range, on a scale from 0 to 255.
-const MIDDLE: u8 = 128;
+/// Position of the samples' colour on the airspeed scale, which goes from 0 for the slowest
+/// condition to 255 for the fastest: the samples show the line of a role, not an airspeed.
+const MID_SCALE: u8 = 128;
 /// Number of colour steps in the key.
 const KEY_STEPS: u8 = 24;
 /// Width of the colour key \[pt\].
@@ -43,7 +44,7 @@ pub(super) fn across_chips_ui(
             text: role.name(),
             name: &format!("Show {}, plot of airspeeds", role.name()),
             sample: Some(Sample {
-                style: palette.role_style(Role::OfAirspeed(MIDDLE, line_of(role)), false),
+                style: palette.role_style(Role::OfAirspeed(MID_SCALE, line_of(role)), false),
                 is_shown,
             }),
             is_lit: false,
@@ -75,16 +76,20 @@ fn paint_key(ui: &Ui, end: Pos2, state: &State, palette: &Palette) {
     let font = FontId::proportional(SMALL_SIZE);
     let dim = palette.dim_text;
     let painter = ui.painter();
-    let most = painter.text(
+    let fastest_text = painter.text(
         end,
         Align2::RIGHT_CENTER,
         format!("{fastest:.0} kt"),
         font.clone(),
         dim,
     );
-    let corner = pos2(most.left() - TEXT_GAP - KEY_WIDTH, end.y - 0.5 * KEY_HEIGHT);
+    let corner = pos2(
+        fastest_text.left() - TEXT_GAP - KEY_WIDTH,
+        end.y - 0.5 * KEY_HEIGHT,
+    );
     let width = KEY_WIDTH / f32::from(KEY_STEPS);
     for step in 0..KEY_STEPS {
+        // Wider than a step, so that no gap shows between two colours.
         let place = Rect::from_min_size(
             corner + vec2(width * f32::from(step), 0.0),
             vec2(width + 0.5, KEY_HEIGHT),
@@ -92,13 +97,13 @@ fn paint_key(ui: &Ui, end: Pos2, state: &State, palette: &Palette) {
         let color = palette.airspeed_color(step.saturating_mul(u8::MAX / (KEY_STEPS - 1)));
         painter.rect_filled(place, 0.0, color);
     }
-    let least = painter.text(
+    let slowest_text = painter.text(
         pos2(corner.x - TEXT_GAP, end.y),
         Align2::RIGHT_CENTER,
         format!("{slowest:.0}"),
         font.clone(),
         dim,
     );
-    let beside = pos2(least.left() - TEXT_GAP, end.y);
+    let beside = pos2(slowest_text.left() - TEXT_GAP, end.y);
     painter.text(beside, Align2::RIGHT_CENTER, "airspeed", font, dim);
 }

@@ -91,8 +91,8 @@ fn bars_ui(
         .iter()
         .map(|&pair| Plot::new(state.dataset().pair_name(pair)).panel(plots.panel(pair, range)));
     let mut figure = Figure::default().plots(panels).shared_y().with_ranges();
-    view.set_subject(&format!("{:?}", state.display.judging.assessed));
-    view.hold_axes(&mut figure, axis_update(ui, state));
+    view.fit_if_subject_changed(&format!("{:?}", state.display.judging.assessed));
+    view.keep_axis_ranges(&mut figure, axis_update(ui, state));
     let message = "No response of this kind: choose another kind above";
     let scene = FigureScene {
         selected: Some(MarkId::Condition(state.condition().id())),
@@ -118,7 +118,7 @@ fn bar_commands(plots: &AssessmentPlots<'_>, event: FigureEvent) -> Vec<Command>
         FigureEvent::ExplanationRequested(target) => {
             vec![SelectionCommand::Explain(Some(target)).into()]
         }
-        FigureEvent::StatusText(words) => vec![SelectionCommand::Tell(words).into()],
+        FigureEvent::StatusText(words) => vec![SelectionCommand::ShowStatus(words).into()],
         FigureEvent::Clicked(..) | FigureEvent::Pointed(_) => Vec::new(),
     }
 }

@@ -25,9 +25,14 @@ pub(super) const PHASE_PERCENT: u8 = 45;
 /// Space above and below the bars, relative to their height.
 const MARGIN: f64 = 0.12;
 /// Distance between a value label and its bar, relative to the visible range.
-const NUMBER_GAP: f64 = 0.05;
+const LABEL_GAP: f64 = 0.05;
 /// Labels have no decimals from this magnitude on: 9.95 would be rounded to 10.0.
 const WHOLE_FROM: f64 = 9.95;
+/// Width of the shading behind a condition without a change, relative to the distance between
+/// conditions.
+const LEFT_OUT_WIDTH: f64 = 0.7;
+/// Colour strength of that shading \[%\].
+const LEFT_OUT_PERCENT: u8 = 13;
 
 /// Plots of the change in J, one for each response.
 pub(super) struct AssessmentPlots<'a> {
@@ -39,6 +44,7 @@ pub(super) struct AssessmentPlots<'a> {
 /// Change in J at a position on the condition axis.
 #[derive(Clone, Copy)]
 struct PlacedChange {
+    /// The condition's index in the dataset.
     at: f64,
     change: CostChange,
 }
@@ -58,8 +64,8 @@ impl PlacedChange {
         }
     }
 
-    /// Returns the value at which a part's bar begins. The phase part is stacked on the magnitude
-    /// part if both have the same sign; otherwise they lie on either side of zero.
+    /// Returns the value at which a part's bar begins (its foot). The phase part is stacked on the
+    /// magnitude part if both have the same sign; otherwise they lie on either side of zero.
     fn foot(&self, part: BarPart) -> f64 {
         let is_stacked =
             part == BarPart::Phase && self.change.magnitude() * self.change.phase() > 0.0;
@@ -80,11 +86,11 @@ impl PlacedChange {
     }
 
     /// Returns the label with the total: above the bar if positive, below if negative.
-    fn number(&self, range: Range) -> Note {
+    fn total_label(&self, range: Range) -> Note {
         let total = self.change.total();
-        let furthest = if total > 0.0 { f64::max } else { f64::min };
-        let end = self.ends().into_iter().fold(0.0, furthest);
-        let gap = NUMBER_GAP * range.width();
+        let further_out = if total > 0.0 { f64::max } else { f64::min };
+        let end = self.ends().into_iter().fold(0.0, further_out);
+        let gap = LABEL_GAP * range.width();
         let digits = if total.abs() < WHOLE_FROM { 1 } else { 0 };
         Note {
             at: Place::Value {
@@ -135,18 +141,18 @@ impl AssessmentPlots<'_> {
         }
         let value_axis = Axis::linear("").showing(Some(range));
         Panel::new(Axis::named("Condition", names), value_axis)
-            .with(left_out_ground(&left_out, range))
+            .with(left_out_shading(&left_out, range))
             .with_all(bars(&found))
             .with(Rule::horizontal(0.0, Stroke::solid(Color::DIM, 0.6)))
             .with(total_lines(&found))
-            .with_all(self.numbers(&found, range))
+            .with_all(self.total_labels(&found, range))
             .with_all(left_out.iter().map(|at| left_out_note(*at, range)))
     }
 
     /// Returns the value labels for the displayed condition and, unless the two are neighbours, for
     /// the condition with the largest change. Labels on every bar would overlap; the status line
     /// shows the other values.
-    fn numbers(&self, found: &[PlacedChange], range: Range) -> Vec<Note> {
+    fn total_labels(&self, found: &[PlacedChange], range: Range) -> Vec<Note> {
         let largest = found
             .iter()
             .max_by(|a, b| a.change.total().abs().total_cmp(&b.change.total().abs()))
@@ -157,14 +163,14 @@ impl AssessmentPlots<'_> {
             .iter()
             .position(|condition| condition.id() == displayed)
             .unwrap_or(0) as f64;
-        let mut numbers = Vec::new();
+        let mut labels = Vec::new();
         for placed in found {
             let is_largest = Some(placed.at) == largest && (placed.at - displayed).abs() > 1.0;
             if placed.at == displayed || is_largest {
-                numbers.push(placed.number(range));
+                labels.push(placed.total_label(range));
             }
         }
-        numbers
+        labels
     }
 }
 
@@ -220,13 +226,13 @@ fn total_lines(found: &[PlacedChange]) -> Curve {
 }
 
 /// Shades the places of the conditions without a change in J, over the whole height.
-fn left_out_ground(left_out: &[f64], range: Range) -> Spans {
+fn left_out_shading(left_out: &[f64], range: Range) -> Spans {
     // The visible range may exceed the data range.
     let range = range.with_margin(1.0, 0.0);
     Spans {
         name: String::new(),
-        color: Color::new(Hue::Rejected).tint(13),
-        width: 0.7,
+        color: Color::new(Hue::Rejected).tint(LEFT_OUT_PERCENT),
+        width: LEFT_OUT_WIDTH,
         spans: left_out
             .iter()
             .map(|at| [*at, range.min, range.max])

@@ -17,8 +17,8 @@ use crate::gui::widgets::controls::named_switch;
 use crate::gui::widgets::number_field::{Entered, NumberField};
 
 /// Explanation on the "auto" check box.
-const AUTOMATIC: &str = "On: from the quantiles of each condition. Off: set by hand, the same for every \
-    condition";
+const AUTOMATIC: &str = "On: from the quantiles of each condition. Off: set by hand, the same \
+    for every condition";
 
 /// Whether the program determines a value.
 #[derive(Clone, Copy)]
@@ -48,18 +48,18 @@ impl SettingControls<'_, '_> {
         let switched = self.automatic_ui(setting, value);
         if typed.value.is_none() {
             match switched {
-                Some(Automatic::On) => self.set(setting, None::<f64>),
-                Some(Automatic::Off) => self.set(setting, Some(number)),
+                Some(Automatic::On) => self.push_change(setting, None::<f64>),
+                Some(Automatic::Off) => self.push_change(setting, Some(number)),
                 None => {}
             }
         }
-        self.apply(setting, typed);
+        self.apply_entry(setting, typed);
     }
 
     /// Returns a value set by hand, or else the value determined by the program.
     fn shown_value(&self, setting: &Setting, value: Value) -> Option<Value> {
         if value == Value::Nothing {
-            found_value(self.state, setting)
+            determined_value(self.state, setting)
         } else {
             Some(value)
         }
@@ -95,20 +95,20 @@ impl SettingControls<'_, '_> {
         if low.value.is_some() || high.value.is_some() {
             let ends = Value::Range([low.value.unwrap_or(lower), high.value.unwrap_or(upper)]);
             match setting.check(ends) {
-                Ok(()) => self.set(setting, ends),
+                Ok(()) => self.push_change(setting, ends),
                 // A dragged end stops before the other end, without a message.
                 Err(_) if low.is_dragged || high.is_dragged => {}
                 Err(error) => self.commands.push(FormCommand::Refuse(error.into()).into()),
             }
         } else {
             match switched {
-                Some(Automatic::On) => self.set(setting, Value::Nothing),
-                Some(Automatic::Off) => self.set(setting, Value::Range([lower, upper])),
+                Some(Automatic::On) => self.push_change(setting, Value::Nothing),
+                Some(Automatic::Off) => self.push_change(setting, Value::Range([lower, upper])),
                 None => {}
             }
         }
-        self.end(low);
-        self.end(high);
+        self.finish_entry(low);
+        self.finish_entry(high);
     }
 
     fn end_ui(
@@ -144,7 +144,7 @@ impl SettingControls<'_, '_> {
 }
 
 /// Returns the value that the program determines for an automatic setting; `None` without a result.
-fn found_value(state: &State, setting: &Setting) -> Option<Value> {
+fn determined_value(state: &State, setting: &Setting) -> Option<Value> {
     let shown = state.shown()?;
     if *setting == setting_table::GAIN_BOUNDS {
         Some(Value::from(Some(shown.gain_bounds())))

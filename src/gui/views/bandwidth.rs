@@ -60,7 +60,7 @@ pub(super) fn bandwidth_detail_ui(
         .figures
         .remove(&View::Requirements)
         .unwrap_or_default();
-    view.set_subject(&figure.title);
+    view.fit_if_subject_changed(&figure.title);
     let words = BandwidthWords {
         state,
         requirements,
@@ -76,7 +76,9 @@ pub(super) fn bandwidth_detail_ui(
             FigureEvent::Clicked(_, MarkId::Condition(id), _) => {
                 commands.push(SelectionCommand::SelectCondition(id).into());
             }
-            FigureEvent::StatusText(words) => commands.push(SelectionCommand::Tell(words).into()),
+            FigureEvent::StatusText(words) => {
+                commands.push(SelectionCommand::ShowStatus(words).into())
+            }
             FigureEvent::Pointed(MarkId::Condition(id)) => {
                 commands.push(SelectionCommand::HoverCondition(id).into());
             }

@@ -48,7 +48,8 @@ fn attitude_commands_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>)
         }
         let name = &channel.name;
         let is_on = state.study.requirements.attitude_command.contains(name);
-        let hint = "The stick commands the attitude instead of its rate; the phase margin alone then determines the bandwidth";
+        let hint = "The stick commands the attitude instead of its rate; the phase margin alone \
+            then determines the bandwidth";
         if let Some(is_on) = check_ui(ui, is_on, format!("attitude of {name}"), hint) {
             commands.push(requirement_edit(
                 state,

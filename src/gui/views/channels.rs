@@ -104,8 +104,9 @@ pub fn channels_view_ui(
     let mut plots = channel_plots(state);
     let update = axis_update(ui, state);
     let (measure, across) = state.display.gains.channel_values;
-    view.inputs.set_subject(&format!("{measure:?} {across:?}"));
-    view.inputs.hold_axes(&mut plots.figure, update);
+    view.inputs
+        .fit_if_subject_changed(&format!("{measure:?} {across:?}"));
+    view.inputs.keep_axis_ranges(&mut plots.figure, update);
     // Step 2.
     let mut inputs = plots.figure.clone();
     let mut outputs = plots.figure.clone();

@@ -13,39 +13,39 @@ use crate::gui::plot::bode_scene::{BodeBand, InvalidRegion, PaneNote};
 use crate::gui::plot::{BodeCurve, Pane, Role};
 use crate::gui::state::window_state::State;
 
-/// Remaining magnitude difference \[dB\] below which the magnitudes count as matched.
+/// Remaining gain \[dB\] below which the magnitudes count as matched: it would be shown as 0.0 dB.
 const MATCHED_DB: f64 = 0.05;
 
-/// Remaining delay \[s\] below which the phases count as matched.
+/// Remaining delay \[s\] below which the phases count as matched: it would be shown as 0 ms.
 const MATCHED_S: f64 = 0.5e-3;
 
 /// Returns the notes in the magnitude and phase panes: J before and after the correction, and the
-/// parts of the wanted gain G and delay D that its net gain k and net delay τ leave. A constrained
-/// response that is not matched is a warning. `None` unless G, D and J exist.
+/// parts of the wanted gain G and delay D that remain after its net gain k and net delay τ. A
+/// constrained response that is not matched is a warning. `None` unless G, D and J exist.
 ///
 /// ```text
-/// left gain   G / k, in dB
-/// left delay  D - τ, in s; negative if the corrected model lags
+/// remaining gain   G / k, in dB
+/// remaining delay  D - τ, in s; negative if the corrected model lags
 /// ```
 pub(super) fn effect_notes(state: &State, pair: Pair) -> Option<[PaneNote; 2]> {
     let shown = state.shown()?;
     let change = shown.cost[pair]?;
     let is_constrained = shown.held()[pair];
-    let left_db = ratio_to_db(shown.delta_gain(pair)? / shown.correction.net_gain(pair));
-    let left_s = shown.delta_delay_s(pair)? - shown.correction.net_delay_s(pair);
+    let remaining_db = ratio_to_db(shown.delta_gain(pair)? / shown.correction.net_gain(pair));
+    let remaining_s = shown.delta_delay_s(pair)? - shown.correction.net_delay_s(pair);
     let magnitude = PaneNote {
         cost: cost_change(change.uncorrected.magnitude, change.corrected.magnitude),
-        verdict: if left_db.abs() < MATCHED_DB {
+        verdict: if remaining_db.abs() < MATCHED_DB {
             "matched".to_owned()
         } else {
-            format!("{} dB left", decimals(left_db, 1))
+            format!("{} dB left", decimals(remaining_db, 1))
         },
-        warns: is_constrained && left_db.abs() >= MATCHED_DB,
+        warns: is_constrained && remaining_db.abs() >= MATCHED_DB,
     };
     let phase = PaneNote {
         cost: cost_change(change.uncorrected.phase, change.corrected.phase),
-        verdict: delay_verdict(state, left_s),
-        warns: is_constrained && left_s.abs() >= MATCHED_S,
+        verdict: delay_verdict(state, remaining_s),
+        warns: is_constrained && remaining_s.abs() >= MATCHED_S,
     };
     Some([magnitude, phase])
 }
@@ -53,13 +53,13 @@ pub(super) fn effect_notes(state: &State, pair: Pair) -> Option<[PaneNote; 2]> {
 /// Returns the area between corrected and identified phase within the band, its ends included;
 /// `NaN` where a curve has no value, and for the magnitudes, which have no area. `None` unless both
 /// curves are drawn.
-pub(super) fn missing_phase(curves: &[BodeCurve], band: Band) -> Option<BodeBand> {
+pub(super) fn remaining_phase_area(curves: &[BodeCurve], band: Band) -> Option<BodeBand> {
     let corrected = drawn_curve(curves, Role::Corrected)?;
     let identified = drawn_curve(curves, Role::IdentifiedRepresentative)?;
     let mut omega = vec![band.min()];
-    for &inner in corrected.omega.iter() {
-        if (band.min()..=band.max()).contains(&inner) {
-            omega.push(inner);
+    for &drawn_omega in corrected.omega.iter() {
+        if (band.min()..=band.max()).contains(&drawn_omega) {
+            omega.push(drawn_omega);
         }
     }
     omega.push(band.max());
@@ -123,20 +123,21 @@ fn cost_change(before: f64, after: f64) -> String {
     format!("J {} → {}", decimals(before, 1), decimals(after, 1))
 }
 
-/// Formats a remaining delay as "lags by 66 ms, 46° at 12 rad/s"; the corrected model lags if
-/// `left_s` is negative.
-fn delay_verdict(state: &State, left_s: f64) -> String {
-    if left_s.abs() < MATCHED_S {
+/// Formats a remaining delay, with the phase that it causes at the upper band limit, as "lags by 66
+/// ms, 46° at 12 rad/s"; the corrected model lags if
+/// `remaining_s` is negative.
+fn delay_verdict(state: &State, remaining_s: f64) -> String {
+    if remaining_s.abs() < MATCHED_S {
         return "matched".to_owned();
     }
-    let verb = if left_s < 0.0 { "lags" } else { "leads" };
-    let top = state.study.settings.band.max();
-    let at_top_deg = (left_s * top).to_degrees().abs();
+    let verb = if remaining_s < 0.0 { "lags" } else { "leads" };
+    let band_end = state.study.settings.band.max();
+    let phase_at_band_end_deg = (remaining_s * band_end).to_degrees().abs();
     format!(
         "{verb} by {} ms, {}° at {}",
-        decimals(s_to_ms(left_s.abs()), 0),
-        decimals(at_top_deg, 0),
-        frequency_words(state, top)
+        decimals(s_to_ms(remaining_s.abs()), 0),
+        decimals(phase_at_band_end_deg, 0),
+        frequency_words(state, band_end)
     )
 }
 

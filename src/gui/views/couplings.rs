@@ -152,7 +152,7 @@ fn couplings_figure_ui(ui: &mut Ui, state: &mut State, palette: &Palette) {
         .figures
         .remove(&View::Couplings)
         .unwrap_or_default();
-    view.hold_axes(&mut figure, axis_update(ui, state));
+    view.keep_axis_ranges(&mut figure, axis_update(ui, state));
     let scene = FigureScene {
         zooms: true,
         ..FigureScene::new(

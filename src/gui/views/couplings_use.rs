@@ -26,7 +26,7 @@ pub fn couplings_job(state: &State) -> CouplingsJob {
 /// Never without a current analysis. Couplings in use are assessed for their cost, others if they
 /// may be worthwhile: the phase is corrected (by delays that are matched in all conditions, or by
 /// leads), and at least [`LEAST_CONDITIONS`] conditions have results.
-pub fn are_couplings_judged(state: &State) -> bool {
+pub fn must_assess_couplings(state: &State) -> bool {
     let settings = &state.study.settings;
     let Some(analysis) = state.analysis() else {
         return false;
@@ -54,7 +54,7 @@ pub fn are_couplings_judged(state: &State) -> bool {
 /// Returns the assessment of unused couplings and J in left-out conditions without and with them,
 /// if this J shows them to be worthwhile.
 pub fn offered_couplings(state: &State) -> Option<(&Arc<CouplingsAssessment>, CorrectionCost)> {
-    if are_couplings_used(state) || !are_couplings_judged(state) {
+    if are_couplings_used(state) || !must_assess_couplings(state) {
         return None;
     }
     let assessment = state.couplings()?.as_ref().ok()?;

@@ -22,8 +22,9 @@ const LISTED: [Role; 4] = [
     Role::Scheduled,
 ];
 
-/// Magnitude difference \[dB\] from which it is shown as a warning; below this and [`WARNING_DEG`],
-/// J is small.
+/// Magnitude difference \[dB\] from which it is shown as a warning. With this difference and
+/// [`WARNING_DEG`] at every frequency, J would be 20 (1.0² + 0.0175 · 10²) = 55, near the 50 up to
+/// which a model is nearly indistinguishable from flight (M4).
 const WARNING_DB: f64 = 1.0;
 /// Phase difference \[deg\] from which it is shown as a warning.
 const WARNING_DEG: f64 = 10.0;
@@ -64,7 +65,9 @@ impl<'a> ReadoutSource<'a> {
         match (cursor, marks.first()) {
             (Some(omega), _) => Some(self.values("ω at the pointer", omega)),
             (None, Some(omega)) => Some(self.values("ω at the mark", *omega)),
-            (None, None) => Some(self.values("ω of the largest error", self.largest_error()?)),
+            (None, None) => {
+                Some(self.values("ω of the largest error", self.omega_of_largest_error()?))
+            }
         }
     }
 
@@ -180,7 +183,7 @@ impl<'a> ReadoutSource<'a> {
     }
 
     /// Returns the frequency \[rad/s\] within the band at which the integrand of J is largest (M4).
-    fn largest_error(&self) -> Option<f64> {
+    fn omega_of_largest_error(&self) -> Option<f64> {
         let (min, max) = self.band;
         let mut largest: Option<ErrorAt> = None;
         for &omega in self.curve(Role::Corrected)?.omega.iter() {

@@ -1,6 +1,9 @@
 //! Error bars on gains and delays: whether they are shown, their description, and their switch. The
 //! variance of a bar has two sources: the unknown trim of the flight, and the identification (M13:
 //! docs/error-bars.md).
+//!
+//! The *current* uncertainty belongs to the present settings, the *older* one to earlier settings.
+//! Texts use only the current one; plots draw the older one dim until the current one is computed.
 
 use egui::Ui;
 
@@ -17,7 +20,8 @@ use crate::gui::commands::display::DisplayCommand;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::Toggle;
 
-/// Returns the uncertainty in gains and delays; `None` if error bars are hidden or not available.
+/// Returns the current uncertainty in gains and delays; `None` if error bars are hidden or until it
+/// is computed.
 pub fn shown_uncertainty(state: &State) -> Option<&Uncertainty> {
     if state.display.gains.hide_bars {
         None
@@ -26,9 +30,8 @@ pub fn shown_uncertainty(state: &State) -> Option<&Uncertainty> {
     }
 }
 
-/// Returns the uncertainty drawn in gain plots: until it is computed for the present settings, the
-/// one for earlier settings, which [`dim_older_bars`] dims. `None` if error bars are hidden or have
-/// not been computed.
+/// Returns the uncertainty drawn in gain plots: the current one or, until it is computed, the older
+/// one, which [`dim_older_bars`] dims. `None` if error bars are hidden or have never been computed.
 pub fn painted_uncertainty(state: &State) -> Option<&Uncertainty> {
     if state.display.gains.hide_bars {
         return None;
@@ -64,31 +67,33 @@ fn dim(color: &mut Color) {
 }
 
 /// Describes an error bar: "± 3.3 % (90 %): trim 78 %, identification 22 % of the variance"; then
-/// the remarks, and the count of substitutions (of another model for a representative, M13.1) in
-/// which the value is undefined. Without a half-width, only the remarks.
+/// the remarks. The bar comes from substitutions: each replaces a representative by another model
+/// (M13.1). The number of those for which the value is undefined follows. Without a half-width,
+/// only the remarks.
 pub fn error_bar_words(bar: &Bar, scalar: Scalar, level: f64) -> String {
     let remarks = bar_remark_texts(bar).join(", ");
-    let Some(half) = bar.half_width(level) else {
+    let Some(half_width) = bar.half_width(level) else {
         return format!("no error bar: {remarks}");
     };
-    let half = if scalar.is_delay() {
-        format!("± {:.1} ms", s_to_ms(half))
+    let interval = if scalar.is_delay() {
+        format!("± {:.1} ms", s_to_ms(half_width))
     } else {
-        format!("± {:.1} %", 100.0 * half)
+        format!("± {:.1} %", 100.0 * half_width)
     };
-    let trim = 100.0 * bar.trim_share().unwrap_or_default();
+    let trim_percent = 100.0 * bar.trim_share().unwrap_or_default();
     let mut words = format!(
-        "{half} ({:.0} %): trim {trim:.0} %, identification {:.0} % of the variance",
+        "{interval} ({:.0} %): trim {trim_percent:.0} %, identification {:.0} % of the variance",
         100.0 * level,
-        100.0 - trim
+        100.0 - trim_percent
     );
     if !remarks.is_empty() {
         words.push_str(&format!("; {remarks}"));
     }
-    if bar.left_out > 0 {
+    let undefined_count = bar.left_out;
+    if undefined_count > 0 {
         words.push_str(&format!(
             "; undefined with {} as representative",
-            counted(bar.left_out, "other model")
+            counted(undefined_count, "other model")
         ));
     }
     words

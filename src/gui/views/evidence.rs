@@ -102,8 +102,8 @@ impl EvidenceTables<'_> {
         if let Some(first) = significant.first() {
             let verdict = difference_verdict(first, self.uncertainty.level);
             ui.label(self.palette.small(format!(
-                "{verdict}; \"expected\" is the difference expected from the uncertainty of trim and \
-                identification"
+                "{verdict}; \"expected\" is the difference expected from the uncertainty of trim \
+                and identification"
             )));
         }
         if significant.is_empty() {
@@ -198,7 +198,8 @@ impl EvidenceTables<'_> {
         if let Some(evidence) = cached.evidence() {
             heading_ui(
                 ui,
-                "Error of each form of the schedule in fitted and in left-out conditions [% of the net gain]",
+                "Error of each form of the schedule in fitted and in left-out conditions [% of \
+                    the net gain]",
             );
             let table = FormsTable {
                 state,

@@ -70,48 +70,48 @@ pub fn figure_name(state: &State, view: View) -> String {
 /// figure. The command `gdcm figure` makes the same kind of request.
 pub fn figure_request(state: &State, view: View) -> Option<FigureRequest> {
     let kind = view.figure()?;
-    let pairs = view_content(view).figure_pairs;
+    let pairs = (view_content(view).figure_pairs)(state);
     let display = &state.display;
     // Quantity drawn for each channel (gain or delay), and its horizontal axis (airspeed or
     // conditions).
     let (measure, across) = display.gains.channel_values;
-    let plot = match view {
-        View::Bode => Some(&display.frequency.bode),
-        View::Error => Some(&display.frequency.error),
-        View::Across => Some(&display.frequency.across),
-        _ => None,
-    };
-    // Value ranges that the engineer has chosen by zooming, panning or typing; `None` if fitted.
-    let values = PANES.map(|pane| plot.and_then(|plot| plot.chosen_values(pane)));
-    let bode = BodeOptions {
-        omega: plot.and_then(BodeView::chosen_omega),
-        values,
-        ..bode_options(state)
-    };
     let across_display = &display.frequency.across_display;
-    // Model, correction and average for which the change in J is assessed.
-    let assessed = Some(state.assessment_choice());
-    let defaults = FigureRequest::new(kind, pairs(state), all_channels(state.dataset()));
-    let requirements = shown_requirements(state, kind);
-    let over_time = shown_over_time(state, kind);
-    let mut couplings = None;
-    if view == View::Couplings {
-        couplings = shown_couplings(state);
-    }
+    let couplings = if view == View::Couplings {
+        shown_couplings(state)
+    } else {
+        None
+    };
     Some(FigureRequest {
         measure,
         across,
-        assessed,
+        assessed: Some(state.assessment_choice()),
         across_roles: across_display.roles.clone(),
         across_conditions: across_display.conditions.of_study(&state.study),
-        bode,
+        bode: bode_options_with_ranges(state, view),
         couplings,
         physics: shown_physics(state, kind),
         parameter: display.physics.selected.clone(),
-        requirements,
-        over_time,
-        ..defaults
+        requirements: shown_requirements(state, kind),
+        over_time: shown_over_time(state, kind),
+        ..FigureRequest::new(kind, pairs, all_channels(state.dataset()))
     })
+}
+
+/// Returns the engineer's choices for the curves, with the axis ranges that the engineer has chosen
+/// by zooming, panning or typing in a view over frequency; other ranges are fitted to the curves.
+fn bode_options_with_ranges(state: &State, view: View) -> BodeOptions {
+    let plots = &state.display.frequency;
+    let plot = match view {
+        View::Bode => Some(&plots.bode),
+        View::Error => Some(&plots.error),
+        View::Across => Some(&plots.across),
+        _ => None,
+    };
+    BodeOptions {
+        omega: plot.and_then(BodeView::chosen_omega),
+        values: PANES.map(|pane| plot.and_then(|plot| plot.chosen_values(pane))),
+        ..bode_options(state)
+    }
 }
 
 /// Returns the assessed couplings; `None` until they are available, or if the assessment failed.

@@ -1,6 +1,7 @@
-//! Curves over frequency in the displayed condition: their data (`condition_source`), the engineer's
-//! choices (`bode_options`), and what the window alone adds (`with_interaction`): the highlight
-//! under the pointer, the effect of a click, and a label on results from older settings.
+//! Curves over frequency in the displayed condition: their data (`condition_source`), the
+//! engineer's choices (`bode_options`), and the additions for the window alone
+//! (`with_interaction`): the highlight under the pointer, the effect of a click, and a label on
+//! results from older settings.
 //!
 //! Computing a curve's shape (magnitude and continuous phase) costs most of the time, and does not
 //! depend on the options. The shapes are therefore cached: for each response in
@@ -46,8 +47,8 @@ pub(in crate::gui) fn condition_source(state: &State) -> Option<ConditionSource<
     })
 }
 
-/// Returns the engineer's choices for the curves, which are the same in the window and in figures on
-/// paper. Options without a choice in the window keep their defaults.
+/// Returns the engineer's choices for the curves, which are the same in the window and in figures
+/// on paper. Options without a choice in the window keep their defaults.
 pub(in crate::gui) fn bode_options(state: &State) -> BodeOptions {
     let display = &state.display;
     let curves = &display.curves;
@@ -91,9 +92,9 @@ pub(in crate::gui) fn bode_curves(state: &mut State, pair: Pair) -> Vec<BodeCurv
     with_interaction(state, curves, None)
 }
 
-/// Returns all curves for a response in the displayed condition with continuous phases, whatever the
-/// engineer has hidden, isolated or shifted: for comparison with an identification from records.
-/// Empty until the responses are available.
+/// Returns all curves for a response in the displayed condition with continuous phases, whatever
+/// the engineer has hidden, isolated or shifted: for comparison with an identification from
+/// records. Empty until the responses are available.
 pub(super) fn plain_curves(state: &mut State, pair: Pair) -> Vec<BodeCurve> {
     response_curves(state, pair, &BodeOptions::default())
 }
@@ -151,7 +152,8 @@ pub(super) fn error_reference(curves: &[BodeCurve]) -> Option<CurveId> {
 
 /// Adds the parts that depend on the pointer and on running computations: for each model its
 /// highlight and the effect of a click on it; for the scheduled curve a label, if the schedule
-/// belongs to older settings than the condition's result. `reference` is the model with which error curves are compared; it cannot be rejected.
+/// belongs to older settings than the condition's result. `reference` is the model with which error
+/// curves are compared; it cannot be rejected.
 fn with_interaction(
     state: &State,
     mut curves: Vec<BodeCurve>,

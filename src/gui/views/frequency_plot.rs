@@ -87,7 +87,7 @@ impl FrequencyPlot<'_> {
             commands.push(SelectionCommand::Hover(id.clone()).into());
         }
         if let Some(words) = pointed_curve_text(view, curves, quantity, unit) {
-            commands.push(SelectionCommand::Tell(words).into());
+            commands.push(SelectionCommand::ShowStatus(words).into());
         }
         if let Some(omega) = view.pointed_omega {
             commands.push(CurveCommand::PointAt(omega).into());

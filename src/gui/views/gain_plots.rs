@@ -209,7 +209,7 @@ pub fn gain_command(state: &State, event: FigureEvent) -> Option<Command> {
         FigureEvent::ExplanationRequested(target) => {
             Some(SelectionCommand::Explain(Some(target)).into())
         }
-        FigureEvent::StatusText(words) => Some(SelectionCommand::Tell(words).into()),
+        FigureEvent::StatusText(words) => Some(SelectionCommand::ShowStatus(words).into()),
         FigureEvent::Pointed(MarkId::Condition(condition)) => {
             Some(SelectionCommand::HoverCondition(condition).into())
         }

@@ -8,14 +8,14 @@ use crate::gui::commands::command::Command;
 use crate::gui::widgets::number_entry::number_entry_ui;
 
 /// Field width \[pt\].
-const FIELD: f32 = 56.0;
+const FIELD_WIDTH: f32 = 56.0;
 
 pub(super) struct LimitField {
     /// Accessible name.
     name: String,
     /// Factor from the stored to the displayed value.
     to_shown: f64,
-    /// Factor from the typed to the stored value.
+    /// Factor from the typed to the stored value, the inverse of `to_shown`.
     to_stored: f64,
 }
 
@@ -49,7 +49,8 @@ impl LimitField {
     /// Draws the field, and changes `value` if a number was entered.
     pub(super) fn ui(&self, ui: &mut Ui, value: &mut f64, commands: &mut Vec<Command>) {
         let text = self.text(*value);
-        let entry = number_entry_ui(ui, &self.name, &text, "", FIELD, commands);
+        let entry = number_entry_ui(ui, &self.name, &text, "", FIELD_WIDTH, commands);
+        // An emptied field leaves the value unchanged.
         if let Some(Some(typed)) = entry {
             *value = self.to_stored * typed;
         }
@@ -66,13 +67,14 @@ impl LimitField {
             Some(value) => self.text(*value),
             None => String::new(),
         };
-        let entry = number_entry_ui(ui, &self.name, &text, "none", FIELD, commands);
+        let entry = number_entry_ui(ui, &self.name, &text, "none", FIELD_WIDTH, commands);
         if let Some(typed) = entry {
             *value = typed.map(|typed| self.to_stored * typed);
         }
     }
 
-    /// Formats a stored value in the displayed unit, without the conversion's rounding error.
+    /// Formats a stored value in the displayed unit, rounded to nine decimals: without the rounding
+    /// error that the conversion adds, as in 0.07 · 100 = 7.000000000000001.
     fn text(&self, value: f64) -> String {
         number((1e9 * (self.to_shown * value)).round() / 1e9)
     }

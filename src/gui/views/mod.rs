@@ -3,6 +3,7 @@
 
 pub mod across;
 mod across_chips;
+mod across_curves;
 mod across_readout;
 pub mod assembling;
 pub mod assessment;
@@ -15,6 +16,7 @@ mod axis_updates;
 mod bandwidth;
 mod bandwidth_settings;
 pub mod bode;
+pub mod captioned_settings;
 pub mod channels;
 pub mod compare;
 mod correction_effect;
@@ -43,15 +45,19 @@ pub mod physics;
 pub mod poles;
 pub mod records;
 mod requirement_cards;
+mod requirement_cells;
 mod requirement_details;
 mod requirement_edits;
 mod requirement_grid;
+mod requirement_grid_layout;
 mod requirement_histories;
 pub mod requirement_history_jobs;
 mod requirement_limits;
+mod requirement_limits_menu;
 mod requirement_modes;
 pub mod requirement_selection;
 mod requirement_tables;
+mod requirement_test_input;
 pub mod requirements;
 mod scatter_bars;
 mod schedule_cost;
@@ -76,7 +82,8 @@ use crate::gui::state::view_pages::ViewPage;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::PageWords;
 use crate::gui::widgets::palette::Palette;
-use across::{across_header_ui, across_job, across_pages, across_view_ui};
+use across::{across_header_ui, across_pages, across_view_ui};
+use across_curves::across_job;
 use assessment::assessment_view_ui;
 use assessment_content::assessed_pairs;
 use assessment_header::{assessment_header_ui, assessment_pages};
@@ -107,7 +114,7 @@ use requirements::{
 use schedule_cost::{schedule_cost_view_ui, schedule_cost_words};
 use variant_analyses::variant_jobs;
 
-pub use couplings_use::{are_couplings_judged, couplings_job, offered_couplings, used_couplings};
+pub use couplings_use::{couplings_job, must_assess_couplings, offered_couplings, used_couplings};
 pub use variant_analyses::overlay_job;
 
 /// Returns a view's content: drawing function, header, background jobs and figure.

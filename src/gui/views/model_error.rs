@@ -1,8 +1,9 @@
 //! Error view: the models' magnitude ratio and phase difference to the identified model, in the
 //! response in focus.
 //!
-//! An error *strip* marks frequencies at which a pilot would notice the error (MUAD, maximum
-//! unnoticeable added dynamics: docs/method.md).
+//! Strips along the frequency axis mark the ranges in which a pilot would notice the corrected
+//! model's error (MUAD, maximum unnoticeable added dynamics: docs/method.md). Reference lines are
+//! at the gain G and the delay D that would match the response (M6), and at the channels' bounds.
 
 use egui::Ui;
 
@@ -34,13 +35,12 @@ pub fn error_view_ui(
     let mut view = std::mem::take(&mut state.display.frequency.error);
     let options = bode_options(state);
     let curves = error_curves(state, pair, &options);
-    let rules = match condition_source(state) {
+    let reference_lines = match condition_source(state) {
         Some(source) => source.error_references(pair, &options, &curves),
         None => Vec::new(),
     };
     let reference = error_reference(&curves);
-    // Frequencies at which a pilot would notice the corrected model's error (MUAD).
-    let strips = noticed(&curves, &options);
+    let noticed_ranges = noticed(&curves, &options);
     let title = state.dataset().pair_name(pair);
     let message = error_message(state, pair);
     let quantity = BodeQuantity::Error {
@@ -55,9 +55,9 @@ pub fn error_view_ui(
     }
     let scene = BodeScene {
         quantity,
-        reference_lines: &rules,
+        reference_lines: &reference_lines,
         reference: reference.as_ref(),
-        noticed_ranges: &strips,
+        noticed_ranges: &noticed_ranges,
         omega_range,
         message: Some(&message),
         ..BodeScene::new(&title, &curves, (band.min(), band.max()))

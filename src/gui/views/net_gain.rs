@@ -58,7 +58,7 @@ pub fn net_gain_view_ui(
         .remove(&View::NetGain)
         .unwrap_or_default();
     let mut plots = net_gain_plots(state);
-    view.hold_axes(&mut plots.figure, axis_update(ui, state));
+    view.keep_axis_ranges(&mut plots.figure, axis_update(ui, state));
     let selected = MarkId::Condition(state.condition().id());
     label_selected_only(
         &mut plots.figure,

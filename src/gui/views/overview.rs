@@ -27,7 +27,7 @@ use crate::gui::widgets::palette::Palette;
 pub fn overview_pages(state: &State) -> Vec<PageEntry> {
     let shown = state.display.frequency.overview.show_phase;
     [false, true]
-        .map(|has_phases| PageEntry::new(ViewPage::Overview(has_phases), has_phases == shown))
+        .map(|has_phases| PageEntry::new(ViewPage::Overview { has_phases }, has_phases == shown))
         .into()
 }
 
@@ -78,7 +78,9 @@ pub fn overview_view_ui(
                 commands.push(SelectionCommand::Hover(id).into())
             }
             OverviewEvent::PointedAt(omega) => commands.push(CurveCommand::PointAt(omega).into()),
-            OverviewEvent::StatusText(words) => commands.push(SelectionCommand::Tell(words).into()),
+            OverviewEvent::StatusText(words) => {
+                commands.push(SelectionCommand::ShowStatus(words).into())
+            }
             OverviewEvent::Isolated(CurveId::Model(id)) => {
                 commands.push(SelectionCommand::Isolate(id).into())
             }

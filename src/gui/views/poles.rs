@@ -146,7 +146,7 @@ fn absence_of_modes(state: &State) -> &'static str {
 fn pole_command(state: &State, event: FigureEvent) -> Option<Command> {
     match event {
         FigureEvent::Pointed(MarkId::Model(id)) => Some(SelectionCommand::Hover(id).into()),
-        FigureEvent::StatusText(words) => Some(SelectionCommand::Tell(words).into()),
+        FigureEvent::StatusText(words) => Some(SelectionCommand::ShowStatus(words).into()),
         FigureEvent::Clicked(_, MarkId::Model(id), keys) => Some(if keys.alt {
             SelectionCommand::Isolate(id).into()
         } else if state.study.is_rejected(&id) {
@@ -195,7 +195,7 @@ fn with_screen_marks(mut figure: Figure, view: &mut FigureView, update: AxisUpda
         slow.panels[0].y.range = Some(imaginary);
     }
     // Step 2.
-    view.hold_axes(&mut figure, update);
+    view.keep_axis_ranges(&mut figure, update);
     // Steps 3 and 4.
     for (index, plot) in figure.plots.iter_mut().enumerate() {
         let panel = &mut plot.panels[0];

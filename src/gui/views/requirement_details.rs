@@ -17,7 +17,7 @@ use gdcm_words::requirement_grid::{value_with_unit_text, verdict_text};
 use super::bandwidth::{bandwidth_detail_ui, bandwidth_numbers_ui, bode_commands};
 use super::offered_couplings;
 use super::requirement_cards::{CardHeading, card_ui};
-use super::requirement_grid::FULL_WIDTH;
+use super::requirement_grid_layout::FULL_WIDTH;
 use super::requirement_histories::{
     record_choice_ui, time_detail_ui, time_numbers_ui, time_subject,
 };
@@ -298,15 +298,11 @@ impl Details<'_> {
             subject: &subject,
             is_accented: RequirementDetail::of_group(self.requirement.group()) == Some(detail),
         };
-        let mut chosen = Vec::new();
-        let choice_state: &State = state;
-        let control = |ui: &mut Ui| {
+        let content_area = card_ui(ui, area, &heading, self.palette, |ui| {
             if detail == RequirementDetail::Time {
-                record_choice_ui(ui, choice_state, &mut chosen);
+                record_choice_ui(ui, state, commands);
             }
-        };
-        let content_area = card_ui(ui, area, &heading, self.palette, control);
-        commands.extend(chosen);
+        });
         let builder = UiBuilder::new()
             .id_salt(heading.title)
             .max_rect(content_area);

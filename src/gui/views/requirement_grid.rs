@@ -1,18 +1,18 @@
-//! Requirement grid: a row for each requirement, a column for each condition. In windows narrower
-//! than [`FULL_WIDTH`], each group except that of the selected cell folds to a row of counts.
-//!
-//! A cell has the corrected model's value, on a warning background if it is outside the limit, and
-//! at its left a strip in the warning colour if the physics model's value is outside.
-//! [`GridLayout`] has the columns, [`GridPainter::lines`] the rows, and each kind of row a method
-//! that draws it.
+//! Requirement grid: a line for each requirement, a column for each condition. In a narrow window
+//! each group of requirements, except that of the selected cell, is folded to a line of counts.
 //!
 //! A requirement asks that a property of the corrected model agrees with the identified model, or
 //! with a held-out record, within a limit (M17: docs/requirements.md). Its verdict is *met* or
 //! *outside*; other cells are not determined, or have no limit.
+//!
+//! [`GridPainter::lines`] lists the lines from top to bottom, and each kind of line has a method
+//! that draws it. In this file, `row` is a requirement with its cells ([`GridRow`]), `line` the
+//! area of a line on the screen, `column` a condition's index in the grid, and `position` the place
+//! of that column in display order. `requirement_grid_layout` has the columns' positions,
+//! `requirement_cells` the look of a cell.
 
 use egui::{
-    Align2, EventFilter, Key, Rect, Response, Role, ScrollArea, Sense, Stroke, StrokeKind, Ui,
-    UiBuilder, Vec2, pos2, vec2,
+    Align2, EventFilter, Key, Rect, Response, Role, ScrollArea, Sense, Ui, UiBuilder, pos2, vec2,
 };
 
 use gdcm_model::units::telling;
@@ -24,6 +24,8 @@ use gdcm_words::requirement_grid::{
     value_text, value_with_unit_text, verdict_text,
 };
 
+use super::requirement_cells::{CellLook, NUMBER_MARGIN};
+use super::requirement_grid_layout::{FULL_WIDTH, GridLayout, LIMIT_WIDTH};
 use super::requirement_limits::limit_editor_ui;
 use super::requirement_selection::{
     column_order, requirement_names, select_commands, selected_requirement,
@@ -38,35 +40,12 @@ use crate::gui::widgets::elision::elided;
 use crate::gui::widgets::painted_text::chevron;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, body, medium, small};
 
-/// Window width from which the grid shows all groups and the drawer all details \[pt\].
-pub(super) const FULL_WIDTH: f32 = 1400.0;
-// Column widths [pt].
-const GROUP: f32 = 94.0;
-const NAME: f32 = 158.0;
-const UNIT: f32 = 28.0;
-const LIMIT: f32 = 58.0;
-/// Minimum width of a condition's column \[pt\].
-const LEAST_CONDITION: f32 = 40.0;
-/// Maximum width of a condition's column \[pt\].
-const MOST_CONDITION: f32 = 72.0;
-/// Row height if all groups are open \[pt\].
-const ROW: f32 = 19.0;
-/// Row height if groups are folded \[pt\].
-const FOLDED_ROW: f32 = 21.0;
-/// Distance between rows \[pt\].
-const ROW_GAP: f32 = 2.0;
-/// Additional distance between groups \[pt\].
+/// Distance between lines \[pt\].
+const LINE_GAP: f32 = 2.0;
+/// Additional distance between groups without headings \[pt\].
 const GROUP_GAP: f32 = 4.0;
-/// Width of a cell's strip for the physics model \[pt\].
-const STRIP: f32 = 5.0;
-/// Distance between cells \[pt\].
-const CELL_GAP: f32 = 2.0;
-/// Distance from a number to its cell's right edge \[pt\].
-const NUMBER_MARGIN: f32 = 8.0;
 /// Indentation of group names and requirements if groups are folded \[pt\].
 const INDENT: f32 = 13.0;
-/// Share of the warning colour in the background of a cell outside its limit.
-const OUTSIDE_TINT: f32 = 0.32;
 
 /// Draws the grid into the remaining space, with scroll bars where it does not fit.
 pub(super) fn grid_ui(
@@ -102,58 +81,10 @@ pub(super) fn grid_ui(
         });
 }
 
-/// Columns and row height of the grid; positions are from the grid's left edge \[pt\].
-#[derive(Clone, Copy)]
-struct GridLayout {
-    is_folded: bool,
-    name: f32,
-    /// Left edge of the unit column.
-    unit: f32,
-    /// Left edge of the first condition's column.
-    conditions: f32,
-    condition_width: f32,
-    count: usize,
-    row: f32,
-}
-
-impl GridLayout {
-    fn new(available: f32, count: usize, is_folded: bool) -> Self {
-        let name = if is_folded { 0.0 } else { GROUP };
-        let unit = name + NAME;
-        let conditions = unit + UNIT;
-        let room = (available - conditions - LIMIT) / count.max(1) as f32;
-        Self {
-            is_folded,
-            name,
-            unit,
-            conditions,
-            condition_width: room.clamp(LEAST_CONDITION, MOST_CONDITION).floor(),
-            count,
-            row: if is_folded { FOLDED_ROW } else { ROW },
-        }
-    }
-
-    /// Returns the left edge of the limit column.
-    fn limit(&self) -> f32 {
-        self.conditions + self.condition_width * self.count as f32
-    }
-
-    fn width(&self) -> f32 {
-        self.limit() + LIMIT
-    }
-
-    /// Returns a cell's area; `place` counts the columns in display order.
-    fn cell(&self, row: Rect, place: usize) -> Rect {
-        let left = row.left() + self.conditions + self.condition_width * place as f32;
-        Rect::from_min_max(
-            pos2(left, row.top()),
-            pos2(left + self.condition_width - CELL_GAP, row.bottom()),
-        )
-    }
-}
-
+/// Line of the grid on the screen.
 #[derive(Clone, Copy)]
 enum GridLine<'a> {
+    /// Condition numbers.
     Conditions,
     Airspeeds,
     /// Group heading, with counts if the group is folded.
@@ -168,7 +99,7 @@ enum GridLine<'a> {
 struct GridPainter<'a> {
     state: &'a State,
     grid: &'a RequirementGrid,
-    /// Column indices in display order.
+    /// Indices of the conditions' columns, in display order.
     columns: Vec<usize>,
     selected: Requirement,
     layout: GridLayout,
@@ -205,7 +136,7 @@ impl GridPainter<'_> {
         lines
     }
 
-    /// Returns the rows that can be selected, in display order.
+    /// Returns the requirements that can be selected, in display order.
     fn visible_requirements(&self) -> Vec<Requirement> {
         let mut requirements = Vec::new();
         for line in self.lines() {
@@ -222,84 +153,93 @@ impl GridPainter<'_> {
             GridLine::Requirement {
                 is_first_of_group: true,
                 ..
-            } if !self.layout.is_folded => ROW_GAP + GROUP_GAP,
-            _ => ROW_GAP,
+            } if !self.layout.is_folded => LINE_GAP + GROUP_GAP,
+            _ => LINE_GAP,
         }
     }
 
     fn height(&self) -> f32 {
         let lines = self.lines();
         let gaps: f32 = lines.iter().map(|line| self.gap_above(*line)).sum();
-        gaps + self.layout.row * lines.len() as f32
+        gaps + self.layout.row_height * lines.len() as f32
     }
 
+    /// Draws the visible lines from top to bottom.
     fn ui(&self, ui: &mut Ui, area: Rect, commands: &mut Vec<Command>) {
         let mut top = area.top();
-        for line in self.lines() {
-            top += self.gap_above(line);
-            let row = Rect::from_min_size(
+        for grid_line in self.lines() {
+            top += self.gap_above(grid_line);
+            let line = Rect::from_min_size(
                 pos2(area.left(), top),
-                vec2(self.layout.width(), self.layout.row),
+                vec2(self.layout.width(), self.layout.row_height),
             );
-            top = row.bottom();
-            if !ui.is_rect_visible(row) {
+            top = line.bottom();
+            if !ui.is_rect_visible(line) {
                 continue;
             }
-            match line {
-                GridLine::Conditions => self.conditions_ui(ui, row, commands),
-                GridLine::Airspeeds => self.airspeeds_ui(ui, row, commands),
-                GridLine::Group(group) => self.group_ui(ui, row, group, commands),
+            match grid_line {
+                GridLine::Conditions => self.conditions_ui(ui, line, commands),
+                GridLine::Airspeeds => self.airspeeds_ui(ui, line, commands),
+                GridLine::Group(group) => self.group_ui(ui, line, group, commands),
                 GridLine::Requirement {
-                    row: requirement,
+                    row,
                     is_first_of_group,
                 } => {
                     if is_first_of_group && !self.layout.is_folded {
-                        let group = requirement.requirement.group();
-                        let font = medium(BODY_SIZE);
-                        let at = pos2(row.left(), row.center().y);
-                        let text = group_name(group);
-                        let color = self.palette.text;
-                        ui.painter()
-                            .text(at, Align2::LEFT_CENTER, text, font, color);
+                        self.paint_group_name(ui, line, row.requirement.group());
                     }
-                    self.requirement_ui(ui, row, requirement, commands);
+                    self.requirement_ui(ui, line, row, commands);
                 }
             }
         }
     }
 
-    /// Draws the condition numbers; a click on the row's name sorts the columns by number.
-    fn conditions_ui(&self, ui: &mut Ui, row: Rect, commands: &mut Vec<Command>) {
-        self.heading_ui(ui, row, "condition", GridOrder::Number, commands);
-        let shown = self.state.condition().id();
-        for (place, column) in self.columns.iter().enumerate() {
+    /// Paints a group's name in its own column, in the line of the group's first requirement.
+    fn paint_group_name(&self, ui: &Ui, line: Rect, group: RequirementGroup) {
+        let at = pos2(line.left(), line.center().y);
+        let font = medium(BODY_SIZE);
+        let color = self.palette.text;
+        ui.painter()
+            .text(at, Align2::LEFT_CENTER, group_name(group), font, color);
+    }
+
+    /// Draws the condition numbers; a click on the line's name sorts the columns by number.
+    fn conditions_ui(&self, ui: &mut Ui, line: Rect, commands: &mut Vec<Command>) {
+        self.heading_ui(ui, line, "condition", GridOrder::Number, commands);
+        let displayed = self.state.condition().id();
+        for (position, column) in self.columns.iter().enumerate() {
             let id = self.grid.conditions[*column].id;
-            let font = if id == shown {
+            let font = if id == displayed {
                 medium(BODY_SIZE)
             } else {
                 body()
             };
-            let color = if id == shown {
+            let color = if id == displayed {
                 self.palette.text
             } else {
                 self.palette.dim_text
             };
-            let cell = self.layout.cell(row, place);
+            let cell = self.layout.cell(line, position);
             let at = pos2(cell.right() - NUMBER_MARGIN, cell.center().y);
             let painter = ui.painter();
             painter.text(at, Align2::RIGHT_CENTER, id.to_string(), font, color);
         }
-        let at = pos2(row.right(), row.center().y);
-        let color = self.palette.dim_text;
-        ui.painter()
-            .text(at, Align2::RIGHT_CENTER, "limit", small(), color);
+        self.paint_limit_heading(ui, line, "limit");
     }
 
-    /// Draws the conditions' airspeeds; a click on the row's name sorts the columns by airspeed.
-    fn airspeeds_ui(&self, ui: &mut Ui, row: Rect, commands: &mut Vec<Command>) {
-        self.heading_ui(ui, row, "airspeed, kt", GridOrder::Airspeed, commands);
-        for (place, column) in self.columns.iter().enumerate() {
-            let cell = self.layout.cell(row, place);
+    /// Paints the heading of the limit column.
+    fn paint_limit_heading(&self, ui: &Ui, line: Rect, text: &str) {
+        let at = pos2(line.right(), line.center().y);
+        let color = self.palette.dim_text;
+        ui.painter()
+            .text(at, Align2::RIGHT_CENTER, text, small(), color);
+    }
+
+    /// Draws the conditions' airspeeds; a click on the line's name sorts the columns by airspeed.
+    fn airspeeds_ui(&self, ui: &mut Ui, line: Rect, commands: &mut Vec<Command>) {
+        self.heading_ui(ui, line, "airspeed, kt", GridOrder::Airspeed, commands);
+        for (position, column) in self.columns.iter().enumerate() {
+            let cell = self.layout.cell(line, position);
             let at = pos2(cell.right() - NUMBER_MARGIN, cell.center().y);
             let text = telling(self.grid.conditions[*column].airspeed_kt, 0);
             let color = self.palette.dim_text;
@@ -308,22 +248,23 @@ impl GridPainter<'_> {
         }
     }
 
-    /// Draws a heading row's name, a button that extends to the limit column.
+    /// Draws the name of a line with condition properties, a button that extends to the limit
+    /// column and sorts the columns by `order`.
     fn heading_ui(
         &self,
         ui: &mut Ui,
-        row: Rect,
+        line: Rect,
         text: &str,
         order: GridOrder,
         commands: &mut Vec<Command>,
     ) {
         let display = self.display();
         let is_order = display.order == order;
-        let place = Rect::from_min_max(
-            pos2(row.left() + self.layout.name, row.top()),
-            pos2(row.left() + self.layout.limit(), row.bottom()),
+        let area = Rect::from_min_max(
+            pos2(line.left() + self.layout.name_left, line.top()),
+            pos2(line.left() + self.layout.limit_left(), line.bottom()),
         );
-        let response = ui.interact(place, ui.scope_id().with(text), Sense::click());
+        let response = ui.interact(area, ui.scope_id().with(text), Sense::click());
         let is_pointed = response.hovered() || response.has_focus();
         let mut words = text.to_owned();
         if is_order {
@@ -338,7 +279,7 @@ impl GridPainter<'_> {
         } else {
             self.palette.dim_text
         };
-        let at = pos2(place.left(), row.center().y);
+        let at = pos2(area.left(), line.center().y);
         ui.painter()
             .text(at, Align2::LEFT_CENTER, words, small(), color);
         let response = named(response, Role::Button, format!("Sort by {text}"));
@@ -353,25 +294,27 @@ impl GridPainter<'_> {
     fn group_ui(
         &self,
         ui: &mut Ui,
-        row: Rect,
+        line: Rect,
         group: RequirementGroup,
         commands: &mut Vec<Command>,
     ) {
         let palette = self.palette;
         let is_open = group == self.selected.group();
-        chevron(ui, pos2(row.left() + 5.0, row.center().y), is_open, palette);
-        let at = pos2(row.left() + INDENT, row.center().y);
+        let arrow = pos2(line.left() + 5.0, line.center().y);
+        chevron(ui, arrow, is_open, palette);
+        let at = pos2(line.left() + INDENT, line.center().y);
         let name = group_name(group);
         let font = medium(BODY_SIZE);
         let painter = ui.painter();
-        let drawn = painter.text(at, Align2::LEFT_CENTER, name, font, palette.text);
-        let end = if is_open {
-            self.layout.limit()
+        let painted_name = painter.text(at, Align2::LEFT_CENTER, name, font, palette.text);
+        // The counts in a folded group's line have clicks of their own.
+        let width = if is_open {
+            self.layout.limit_left()
         } else {
-            self.layout.conditions
+            self.layout.conditions_left
         };
-        let place = row.with_max_x(row.left() + end);
-        let response = ui.interact(place, ui.scope_id().with(("group", group)), Sense::click());
+        let area = line.with_max_x(line.left() + width);
+        let response = ui.interact(area, ui.scope_id().with(("group", group)), Sense::click());
         let response = named_switch(response, Role::Button, is_open, format!("Group {name}"));
         if response.clicked() && !is_open {
             let first = self.grid.group_rows(group).next();
@@ -381,13 +324,13 @@ impl GridPainter<'_> {
             }
         }
         if is_open {
-            let at = pos2(drawn.right() + 14.0, row.center().y);
+            let at = pos2(painted_name.right() + 14.0, line.center().y);
             let words = group_description(group);
             let color = palette.dim_text;
             ui.painter()
                 .text(at, Align2::LEFT_CENTER, words, small(), color);
         } else {
-            self.counts_ui(ui, row, group, commands);
+            self.counts_ui(ui, line, group, commands);
         }
     }
 
@@ -397,16 +340,15 @@ impl GridPainter<'_> {
     fn counts_ui(
         &self,
         ui: &mut Ui,
-        row: Rect,
+        line: Rect,
         group: RequirementGroup,
         commands: &mut Vec<Command>,
     ) {
-        let palette = self.palette;
         let name = group_name(group);
-        for (place, column) in self.columns.iter().enumerate() {
-            let found = self.grid.group_cell(group, *column);
-            let cell = self.layout.cell(row, place);
-            let count = found.count;
+        for (position, column) in self.columns.iter().enumerate() {
+            let group_cell = self.grid.group_cell(group, *column);
+            let area = self.layout.cell(line, position);
+            let count = group_cell.count;
             let has_verdict = count.judged > 0;
             let text = if has_verdict {
                 format!("{}/{}", count.met, count.judged)
@@ -416,34 +358,31 @@ impl GridPainter<'_> {
             let look = CellLook {
                 text: &text,
                 has_value: has_verdict,
-                is_physics_outside: found.is_physics_outside,
+                is_physics_outside: group_cell.is_physics_outside,
                 is_outside: count.met < count.judged,
                 is_dim: !has_verdict,
                 is_selected: false,
             };
-            self.paint_cell(ui, cell, &look);
-            let id = self.grid.conditions[*column].id;
-            let sense = Sense::CLICK;
-            let response = ui.interact(cell, ui.scope_id().with(("count", group, id)), sense);
+            look.paint(ui, area, self.palette);
+            let condition = self.grid.conditions[*column].id;
+            let id = ui.scope_id().with(("count", group, condition));
+            let response = ui.interact(area, id, Sense::CLICK);
             let words = if has_verdict {
-                format!("{name}, condition {id}: {text} met")
+                format!("{name}, condition {condition}: {text} met")
             } else {
-                format!("{name}, condition {id}: no verdict")
+                format!("{name}, condition {condition}: no verdict")
             };
             let response = named(response, Role::Button, &words);
             if response.clicked()
                 && let Some(first) = self.first_outside(group, *column)
             {
-                commands.extend(select_commands(self.state, first, id));
+                commands.extend(select_commands(self.state, first, condition));
             }
             if response.hovered() {
-                commands.push(SelectionCommand::Tell(words).into());
+                commands.push(SelectionCommand::ShowStatus(words).into());
             }
         }
-        let at = pos2(row.right(), row.center().y);
-        let color = palette.dim_text;
-        ui.painter()
-            .text(at, Align2::RIGHT_CENTER, "met", small(), color);
+        self.paint_limit_heading(ui, line, "met");
     }
 
     /// Returns the group's first requirement that a condition does not meet; the group's first if
@@ -462,108 +401,98 @@ impl GridPainter<'_> {
     }
 
     /// Draws a requirement: name, unit, cells, limit.
-    fn requirement_ui(
-        &self,
-        ui: &mut Ui,
-        row: Rect,
-        requirement: &GridRow,
-        commands: &mut Vec<Command>,
-    ) {
+    fn requirement_ui(&self, ui: &mut Ui, line: Rect, row: &GridRow, commands: &mut Vec<Command>) {
         let palette = self.palette;
-        let key = requirement.requirement;
-        let is_selected = key == self.selected;
-        let names = requirement_names(self.state);
-        let font = if is_selected {
+        let requirement = row.requirement;
+        let font = if requirement == self.selected {
             medium(BODY_SIZE)
         } else {
             body()
         };
         let indent = if self.layout.is_folded { INDENT } else { 0.0 };
-        let left = self.layout.name + indent;
-        let at = pos2(row.left() + left, row.center().y);
-        let name = names.name(key);
-        let shown = elided(ui, &name, self.layout.unit - left - 4.0, BODY_SIZE);
+        let left = self.layout.name_left + indent;
+        let at = pos2(line.left() + left, line.center().y);
+        let name = requirement_names(self.state).name(requirement);
+        let shown = elided(ui, &name, self.layout.unit_left - left - 4.0, BODY_SIZE);
         let painter = ui.painter();
         painter.text(at, Align2::LEFT_CENTER, shown, font, palette.text);
-        let at = pos2(row.left() + self.layout.unit, row.center().y);
-        let unit = unit_text(key.unit());
+        let at = pos2(line.left() + self.layout.unit_left, line.center().y);
+        let unit = unit_text(requirement.unit());
         painter.text(at, Align2::LEFT_CENTER, unit, small(), palette.dim_text);
-        for (place, column) in self.columns.iter().enumerate() {
-            if let Some(cell) = requirement.cells.get(*column) {
-                let shown = ShownCell {
-                    rect: self.layout.cell(row, place),
-                    place,
+        for (position, column) in self.columns.iter().enumerate() {
+            if let Some(cell) = row.cells.get(*column) {
+                let placed = PlacedCell {
+                    area: self.layout.cell(line, position),
+                    position,
                     column: *column,
                     cell,
                 };
-                self.cell_ui(ui, requirement, &shown, commands);
+                self.cell_ui(ui, row, &placed, commands);
             }
         }
-        self.limit_ui(ui, row, requirement, commands);
+        self.limit_ui(ui, line, row, commands);
     }
 
+    /// Draws a requirement's cell in a condition; a click or the arrow keys select a cell.
     fn cell_ui(
         &self,
         ui: &mut Ui,
         row: &GridRow,
-        shown: &ShownCell<'_>,
+        placed: &PlacedCell<'_>,
         commands: &mut Vec<Command>,
     ) {
-        let key = row.requirement;
-        let condition = self.grid.conditions[shown.column].id;
-        let is_selected = key == self.selected && condition == self.state.condition().id();
-        let corrected = &shown.cell.corrected;
-        let text = value_text(key, corrected);
-        self.paint_cell(
-            ui,
-            shown.rect,
-            &CellLook {
-                text: &text,
-                has_value: corrected.value.is_some(),
-                is_physics_outside: shown.cell.physics.verdict == CellVerdict::Outside,
-                is_outside: corrected.verdict == CellVerdict::Outside,
-                is_dim: !matches!(corrected.verdict, CellVerdict::Met | CellVerdict::Outside),
-                is_selected,
-            },
-        );
+        let requirement = row.requirement;
+        let condition = self.grid.conditions[placed.column].id;
+        let is_selected = requirement == self.selected && condition == self.state.condition().id();
+        let corrected = &placed.cell.corrected;
+        let text = value_text(requirement, corrected);
+        let look = CellLook {
+            text: &text,
+            has_value: corrected.value.is_some(),
+            is_physics_outside: placed.cell.physics.verdict == CellVerdict::Outside,
+            is_outside: corrected.verdict == CellVerdict::Outside,
+            is_dim: !matches!(corrected.verdict, CellVerdict::Met | CellVerdict::Outside),
+            is_selected,
+        };
+        look.paint(ui, placed.area, self.palette);
         // Tab reaches only the selected cell (`Sense::click` is focusable, `Sense::CLICK` is not);
         // arrow keys reach the others. A cell that has just received the focus would lose it
         // without a focusable sense.
-        let id = ui.scope_id().with((key, condition));
+        let id = ui.scope_id().with((requirement, condition));
         let is_focused = ui.memory(|memory| memory.has_focus(id));
         let sense = if is_selected || is_focused {
             Sense::click()
         } else {
             Sense::CLICK
         };
-        let response = ui.interact(shown.rect, id, sense);
+        let response = ui.interact(placed.area, id, sense);
         let words = format!(
             "{}, condition {condition}: {}, {}; physics {}",
-            requirement_names(self.state).name(key),
-            value_with_unit_text(key, corrected),
-            verdict_text(key, &row.limit, corrected),
-            value_with_unit_text(key, &shown.cell.physics),
+            requirement_names(self.state).name(requirement),
+            value_with_unit_text(requirement, corrected),
+            verdict_text(requirement, &row.limit, corrected),
+            value_with_unit_text(requirement, &placed.cell.physics),
         );
         let response = named_switch(response, Role::Button, is_selected, &words);
         if response.clicked() {
             response.request_focus();
-            commands.extend(select_commands(self.state, key, condition));
+            commands.extend(select_commands(self.state, requirement, condition));
         }
         if response.hovered() {
-            commands.push(SelectionCommand::Tell(words).into());
+            commands.push(SelectionCommand::ShowStatus(words).into());
         }
         if is_selected && response.has_focus() {
-            self.move_selection(ui, &response, shown.place, commands);
+            self.move_selection(ui, &response, placed.position, commands);
         }
     }
 
-    /// Moves selection and focus when arrow keys are pressed, among the rows that are not folded
-    /// and the columns in display order.
+    /// Moves selection and focus when arrow keys are pressed, among the requirements that are not
+    /// folded and the columns in display order; `position` is the selected cell's column.
     fn move_selection(
         &self,
         ui: &Ui,
         response: &Response,
-        place: usize,
+        position: usize,
         commands: &mut Vec<Command>,
     ) {
         let filter = EventFilter {
@@ -577,116 +506,70 @@ impl GridPainter<'_> {
         if across == 0 && down == 0 {
             return;
         }
-        let rows = self.visible_requirements();
-        let row = rows.iter().position(|row| *row == self.selected);
-        let Some(key) = neighbour(&rows, row.unwrap_or(0), down) else {
+        let requirements = self.visible_requirements();
+        let selected = requirements
+            .iter()
+            .position(|requirement| *requirement == self.selected);
+        let Some(requirement) = neighbour(&requirements, selected.unwrap_or(0), down) else {
             return;
         };
-        let Some(column) = neighbour(&self.columns, place, across) else {
+        let Some(column) = neighbour(&self.columns, position, across) else {
             return;
         };
         let condition = self.grid.conditions[column].id;
-        let id = ui.scope_id().with((key, condition));
+        let id = ui.scope_id().with((requirement, condition));
         ui.memory_mut(|memory| memory.request_focus(id));
-        commands.extend(select_commands(self.state, key, condition));
+        commands.extend(select_commands(self.state, requirement, condition));
     }
 
-    fn paint_cell(&self, ui: &Ui, rect: Rect, look: &CellLook<'_>) {
-        let palette = self.palette;
-        let painter = ui.painter();
-        if look.has_value {
-            let strip = rect.with_max_x(rect.left() + STRIP);
-            let body = rect.with_min_x(rect.left() + STRIP + 1.0);
-            let strip_color = if look.is_physics_outside {
-                palette.warning
-            } else {
-                palette.line
-            };
-            let ground = if look.is_outside {
-                palette.panel.lerp_to_gamma(palette.warning, OUTSIDE_TINT)
-            } else {
-                palette.panel
-            };
-            painter.rect_filled(strip, 1.5, strip_color);
-            painter.rect_filled(body, 2.0, ground);
-        }
-        let color = if look.is_dim {
-            palette.dim_text
-        } else {
-            palette.text
-        };
-        let font = if look.is_selected {
-            medium(BODY_SIZE)
-        } else {
-            body()
-        };
-        let at = pos2(rect.right() - NUMBER_MARGIN, rect.center().y);
-        painter.text(at, Align2::RIGHT_CENTER, look.text, font, color);
-        if look.is_selected {
-            let stroke = Stroke::new(1.5, palette.accent);
-            painter.rect_stroke(rect.expand(0.5), 3.0, stroke, StrokeKind::Outside);
-        }
-    }
-
-    /// Draws a row's limit; a double click or Enter opens its editor.
-    fn limit_ui(&self, ui: &mut Ui, row: Rect, requirement: &GridRow, commands: &mut Vec<Command>) {
-        let key = requirement.requirement;
-        let left = row.left() + self.layout.limit();
-        let place = row.with_min_x(left);
-        let id = ui.scope_id().with(("limit", key));
-        let response = ui.interact(place, id, Sense::click());
+    /// Draws a requirement's limit; a double click or Enter opens its editor.
+    fn limit_ui(&self, ui: &mut Ui, line: Rect, row: &GridRow, commands: &mut Vec<Command>) {
+        let requirement = row.requirement;
+        let area = line.with_min_x(line.left() + self.layout.limit_left());
+        let id = ui.scope_id().with(("limit", requirement));
+        let response = ui.interact(area, id, Sense::click());
         let color = if response.hovered() || response.has_focus() {
             self.palette.accent
         } else {
             self.palette.dim_text
         };
-        let text = limit_text(key, &requirement.limit);
-        let shown = elided(ui, &text, LIMIT - 6.0, SMALL_SIZE);
-        let at = pos2(row.right(), row.center().y);
+        let text = limit_text(requirement, &row.limit);
+        let shown = elided(ui, &text, LIMIT_WIDTH - 6.0, SMALL_SIZE);
+        let at = pos2(line.right(), line.center().y);
         ui.painter()
             .text(at, Align2::RIGHT_CENTER, shown, small(), color);
-        let name = requirement_names(self.state).name(key);
+        let name = requirement_names(self.state).name(requirement);
         let words = format!(
             "Limit of {name}: {}",
-            limit_description(key, &requirement.limit)
+            limit_description(requirement, &row.limit)
         );
         let response = named(response, Role::Button, format!("Limit of {name}"));
         if response.hovered() {
             let words = format!("{words}; double click: edit");
-            commands.push(SelectionCommand::Tell(words).into());
+            commands.push(SelectionCommand::ShowStatus(words).into());
         }
         let is_entered = response.has_focus() && ui.input(|input| input.key_pressed(Key::Enter));
         if response.double_clicked() || is_entered {
             let display = RequirementsDisplay {
-                edited_limit: Some(key),
+                edited_limit: Some(requirement),
                 ..self.display()
             };
             commands.push(DisplayCommand::ShowRequirements(display).into());
         }
-        if self.display().edited_limit == Some(key) {
-            limit_editor_ui(&response, self.state, key, self.palette, commands);
+        if self.display().edited_limit == Some(requirement) {
+            limit_editor_ui(&response, self.state, requirement, self.palette, commands);
         }
     }
 }
 
 /// Cell at its position on the screen.
-struct ShownCell<'a> {
-    rect: Rect,
+struct PlacedCell<'a> {
+    area: Rect,
     /// Position among the columns in display order.
-    place: usize,
+    position: usize,
     /// Index of the condition's column in the grid.
     column: usize,
     cell: &'a GridCell,
-}
-
-/// Text in a cell, and the facts that determine its colours.
-struct CellLook<'a> {
-    text: &'a str,
-    has_value: bool,
-    is_physics_outside: bool,
-    is_outside: bool,
-    is_dim: bool,
-    is_selected: bool,
 }
 
 fn presses(ui: &Ui, key: Key) -> isize {
@@ -700,45 +583,6 @@ fn neighbour<T: Copy>(entries: &[T], here: usize, by: isize) -> Option<T> {
     entries.get(there).copied()
 }
 
-/// Draws the legend for strip and background colours above the grid, from right to left; if there
-/// is room, also for undetermined values.
-pub(super) fn grid_legend_ui(ui: &mut Ui, palette: &Palette) {
-    ui.spacing_mut().item_spacing.x = 6.0;
-    if ui.available_width() > 560.0 {
-        ui.label(palette.small(format!("{NOT_DETERMINED_SIGN} not determined")));
-        ui.add_space(6.0);
-    }
-    ui.label(palette.small("background: corrected outside"));
-    sample_ui(ui, palette, CellPart::Background);
-    ui.add_space(6.0);
-    ui.label(palette.small("strip: physics outside"));
-    sample_ui(ui, palette, CellPart::Strip);
-}
-
-/// Part of a cell that the legend explains.
-#[derive(Clone, Copy)]
-enum CellPart {
-    Strip,
-    Background,
-}
-
-/// Draws a small cell with one part in the warning colour.
-fn sample_ui(ui: &mut Ui, palette: &Palette, warned: CellPart) {
-    const SIZE: Vec2 = vec2(22.0, 12.0);
-    let (rect, _) = ui.allocate_exact_size(SIZE, Sense::hover());
-    let strip = rect.with_max_x(rect.left() + 4.0);
-    let body = rect.with_min_x(rect.left() + 5.0);
-    let (strip_color, ground) = match warned {
-        CellPart::Strip => (palette.warning, palette.panel),
-        CellPart::Background => (
-            palette.line,
-            palette.panel.lerp_to_gamma(palette.warning, OUTSIDE_TINT),
-        ),
-    };
-    ui.painter().rect_filled(strip, 1.5, strip_color);
-    ui.painter().rect_filled(body, 2.0, ground);
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -750,14 +594,5 @@ mod tests {
         assert_eq!(neighbour(&entries, 2, 3), Some(30));
         assert_eq!(neighbour(&entries, 1, -5), Some(10));
         assert_eq!(neighbour::<usize>(&[], 0, 1), None);
-    }
-
-    #[test]
-    fn many_conditions_keep_readable_columns_and_few_do_not_drift_apart() {
-        let many = GridLayout::new(900.0, 60, false);
-        assert!(many.condition_width >= LEAST_CONDITION && many.width() > 900.0);
-        let usual = GridLayout::new(945.0, 11, false);
-        assert!(usual.width() <= 945.0 && usual.condition_width > 50.0);
-        assert!(GridLayout::new(900.0, 1, true).condition_width <= MOST_CONDITION);
     }
 }

@@ -1,37 +1,36 @@
 //! A flight record with its tolerances, or the responses to a test input, in the requirement
-//! details (M17.2: docs/requirements.md). A *quantity* is an output, or an angle integrated from a
-//! rate, with its tolerance; the *peak error* is the greatest error relative to the tolerance.
+//! details (M17.2: docs/requirements.md). `requirement_test_input` has the fields for the test
+//! input.
+//!
+//! A *quantity* is an output, or an angle integrated from a rate, with its tolerance; the *peak
+//! error* is the greatest error relative to the tolerance.
 
 use egui::{Align2, Grid, Label, Sense, Ui, Vec2, pos2, vec2};
 
-use gdcm_method::requirements::{RecordCheck, TestInput, TestInputShape};
+use gdcm_method::requirements::RecordCheck;
 use gdcm_model::number_format::decimals;
-use gdcm_model::units::{number, telling};
+use gdcm_model::units::telling;
 use gdcm_plot::figure::Figure;
 use gdcm_plot::figure::figure::Plot;
 use gdcm_plot::figure::request::OverTime;
 use gdcm_plot::figure::requirements::{quantity_figure, test_answers_figure};
-use gdcm_study::decisions::requirement_settings::RequirementPart;
 use gdcm_study::results::grid_requirement::{Requirement, RequirementLimit};
 use gdcm_study::results::record_history::{QuantityHistory, RecordHistory};
 use gdcm_words::missing_results::not_in_history_text;
 use gdcm_words::requirement_grid::limit_description;
 
 use super::requirement_cards::role_color;
-use super::requirement_edits::requirement_edit;
-use super::requirement_grid::FULL_WIDTH;
+use super::requirement_grid_layout::FULL_WIDTH;
 use super::requirement_history_jobs::{compared_record, over_time, record_job};
+use super::requirement_test_input::test_input_ui;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
-use crate::gui::commands::form::FormCommand;
 use crate::gui::plot::{FigureScene, FigureWords, figure_ui};
 use crate::gui::state::requirements_display::{RecordChoice, RequirementsDisplay};
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::choice_ui;
 use crate::gui::widgets::elision::text_width;
-use crate::gui::widgets::number_entry::number_entry_ui;
 use crate::gui::widgets::palette::{Palette, small};
-use crate::message::Message;
 
 /// Minimum plot size \[pt\].
 const LEAST_PLOT: Vec2 = vec2(140.0, 90.0);
@@ -153,7 +152,7 @@ pub(super) fn time_detail_ui(
     commands: &mut Vec<Command>,
 ) {
     if record_job(state).is_none() {
-        test_ui(ui, state, palette, commands);
+        test_input_ui(ui, state, palette, commands);
     }
     let figure = match over_time(state) {
         Some(Ok(OverTime::Record(history, input))) => {
@@ -184,7 +183,7 @@ pub(super) fn time_detail_ui(
     };
     // The scene borrows the state: take the view out while the figure is drawn.
     let mut view = std::mem::take(&mut state.display.judging.history_figure);
-    view.set_subject(&figure.title);
+    view.fit_if_subject_changed(&figure.title);
     let words = HistoryWords(&figure);
     let scene = FigureScene {
         zooms: true,
@@ -289,78 +288,6 @@ pub(super) fn time_numbers_ui(
         limit_description(Requirement::PeakError(0), &limit)
     );
     ui.add(Label::new(palette.small(text)).wrap());
-}
-
-/// Draws the fields for the test input: shape, size and duration; above them, the record being
-/// read, or that the condition has no record in use.
-fn test_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    if let Some(reading) = &state.records.reading {
-        ui.label(palette.small(format!("reading {reading} …")));
-    } else if compared_record(state).is_none() {
-        ui.add(
-            Label::new(
-                palette.small(
-                    "No flight record of this condition is in use; add or use one in Records",
-                ),
-            )
-            .truncate(),
-        );
-    }
-    let test = state.study.requirements.test;
-    let input = &state.dataset().inputs()[state.display.selection.pair.input];
-    ui.horizontal(|ui| {
-        let mut shape = test.shape;
-        let choices = [
-            (
-                TestInputShape::Step,
-                "step",
-                "Constant for its whole duration, then back to trim",
-            ),
-            (
-                TestInputShape::Doublet,
-                "doublet",
-                "To one side for the first half of its duration, to the other side for the second \
-                half",
-            ),
-        ];
-        choice_ui(ui, "Shape of the test input", &mut shape, &choices);
-        if shape != test.shape {
-            let changed = TestInput { shape, ..test };
-            commands.push(set_test_input(state, RequirementPart::TestShape, changed));
-        }
-        ui.label(palette.small(format!("of {} by", input.name)));
-        let size = test_number_ui(ui, "Size of the test input", test.size, commands);
-        if let Some(size) = size {
-            let changed = TestInput { size, ..test };
-            commands.push(set_test_input(state, RequirementPart::TestSize, changed));
-        }
-        ui.label(palette.small(format!("{} for", input.unit)));
-        let duration_s =
-            test_number_ui(ui, "Duration of the test input", test.duration_s, commands);
-        if let Some(duration_s) = duration_s {
-            let changed = TestInput { duration_s, ..test };
-            commands.push(set_test_input(
-                state,
-                RequirementPart::TestDuration,
-                changed,
-            ));
-        }
-        ui.label(palette.small("s"));
-    });
-}
-
-/// Draws a number field; returns a newly typed number; `None` without one, or if the field was
-/// emptied.
-fn test_number_ui(ui: &mut Ui, name: &str, value: f64, commands: &mut Vec<Command>) -> Option<f64> {
-    number_entry_ui(ui, name, &number(value), "", 48.0, commands)?
-}
-
-/// Returns the command that changes the test input, or the command that reports why it is refused.
-fn set_test_input(state: &State, part: RequirementPart, test: TestInput) -> Command {
-    match test.checked() {
-        Ok(test) => requirement_edit(state, part, |settings| settings.test = test),
-        Err(why) => FormCommand::Refuse(Message::new("wrong-test-input", why.to_string())).into(),
-    }
 }
 
 /// Accessible names for the plots over time.

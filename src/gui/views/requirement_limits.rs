@@ -1,26 +1,22 @@
-//! Editors for requirement limits: the fields for one grid row, and the menu with everything that
-//! determines the limits (M17: docs/requirements.md).
+//! Editor for the limit of a requirement, in a popup beside the grid's limit column (M17:
+//! docs/requirements.md), and the commands that change limits. `requirement_limits_menu` has the
+//! menu for all limits.
 
-use egui::containers::menu::{MenuButton, MenuConfig};
-use egui::{Button, Grid, Popup, PopupCloseBehavior, Response, Ui};
+use egui::{Grid, Popup, PopupCloseBehavior, Response, RichText, Ui};
 
 use gdcm_method::requirements::mode_comparison::ModeTolerance;
 use gdcm_method::requirements::{ModeName, ModeToleranceTable, Tolerance, ToleranceTable};
 use gdcm_study::decisions::requirement_settings::{OverviewLimits, RequirementPart};
 use gdcm_study::results::grid_requirement::Requirement;
 
-use super::bandwidth_settings::{bandwidth_inputs_ui, standard_levels_ui};
 use super::limit_field::LimitField;
 use super::requirement_edits::requirement_edit;
 use super::requirement_selection::requirement_names;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
-use crate::gui::commands::file::FileCommand;
 use crate::gui::commands::form::FormCommand;
-use crate::gui::state::forms::RequirementTable;
 use crate::gui::state::requirements_display::RequirementsDisplay;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::{button_ui, named};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium};
 use crate::message::Message;
 
@@ -39,7 +35,7 @@ pub(super) fn limit_editor_ui(
         .close_behavior(PopupCloseBehavior::CloseOnClickOutside)
         .accessible_name(format!("Edit the limit of {name}"));
     popup.show(|ui| {
-        ui.label(egui::RichText::new(&name).font(medium(BODY_SIZE)));
+        ui.label(RichText::new(&name).font(medium(BODY_SIZE)));
         let editor = LimitEditor { state, palette };
         editor.ui(ui, requirement, commands);
     });
@@ -225,89 +221,15 @@ impl LimitEditor<'_> {
     }
 }
 
-/// Draws the limits menu: tolerance tables, axes with attitude command, level boundaries.
-pub(super) fn limits_menu_ui(
-    ui: &mut Ui,
-    state: &State,
-    palette: &Palette,
-    commands: &mut Vec<Command>,
-) {
-    let settings = &state.study.requirements;
-    let is_default = settings.tolerances == ToleranceTable::default()
-        && settings.mode_tolerances == ModeToleranceTable::default()
-        && settings.overview == OverviewLimits::default();
-    let text = if is_default {
-        "limits: default \u{23f7}"
-    } else {
-        "limits: edited \u{23f7}"
-    };
-    let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
-    let (button, _) = MenuButton::from_button(Button::new(text))
-        .config(config)
-        .ui(ui, |ui| {
-            ui.set_max_width(420.0);
-            menu_content_ui(ui, state, palette, commands);
-        });
-    named(button, egui::Role::Button, "Limits of the requirements");
-}
-
-fn menu_content_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    let settings = &state.study.requirements;
-    let source = settings.tolerances.source();
-    ui.label(palette.small(format!("Tolerances in time: {source}")));
-    ui.label(
-        palette
-            .small("Bandwidth, phase delay and summary: limits of this program, not of a standard"),
-    );
-    ui.label(palette.small("Double click on a limit of the grid to edit it"));
-    ui.separator();
-    ui.horizontal_wrapped(|ui| {
-        let is_default = settings.tolerances == ToleranceTable::default();
-        let button = Button::new("Default tolerances").small();
-        if ui.add_enabled(!is_default, button).clicked() {
-            commands.push(set_tolerances(state, ToleranceTable::default()));
-        }
-        let is_default = settings.mode_tolerances == ModeToleranceTable::default();
-        let button = Button::new("Default tolerances of modes").small();
-        if ui.add_enabled(!is_default, button).clicked() {
-            commands.push(set_mode_tolerances(state, ModeToleranceTable::default()));
-        }
-        let is_default = settings.overview == OverviewLimits::default();
-        let button = Button::new("Default limits").small();
-        if ui.add_enabled(!is_default, button).clicked() {
-            commands.push(set_limits(state, OverviewLimits::default()));
-        }
-    });
-    ui.horizontal_wrapped(|ui| {
-        button_ui(
-            ui,
-            Button::new("Open tolerances…").small(),
-            "Reads the tolerances in time from a file into the study",
-            FileCommand::AskRequirementTable(RequirementTable::Tolerances),
-            commands,
-        );
-        button_ui(
-            ui,
-            Button::new("Save tolerances…").small(),
-            "Writes the tolerances in time to a file for other studies",
-            FileCommand::AskWriteTolerances,
-            commands,
-        );
-    });
-    ui.separator();
-    bandwidth_inputs_ui(ui, state, palette, commands);
-    standard_levels_ui(ui, state, commands);
-}
-
 /// Returns the command that changes the time-history tolerances.
-fn set_tolerances(state: &State, tolerances: ToleranceTable) -> Command {
+pub(super) fn set_tolerances(state: &State, tolerances: ToleranceTable) -> Command {
     requirement_edit(state, RequirementPart::Tolerances, |settings| {
         settings.tolerances = tolerances;
     })
 }
 
 /// Returns the command that changes the mode tolerances.
-fn set_mode_tolerances(state: &State, tolerances: ModeToleranceTable) -> Command {
+pub(super) fn set_mode_tolerances(state: &State, tolerances: ModeToleranceTable) -> Command {
     requirement_edit(state, RequirementPart::ModeTolerances, |settings| {
         settings.mode_tolerances = tolerances;
     })
@@ -315,7 +237,7 @@ fn set_mode_tolerances(state: &State, tolerances: ModeToleranceTable) -> Command
 
 /// Returns the command that changes the limits for bandwidth, phase delay and summary, or that
 /// refuses a limit that is not positive.
-fn set_limits(state: &State, limits: OverviewLimits) -> Command {
+pub(super) fn set_limits(state: &State, limits: OverviewLimits) -> Command {
     match limits.checked() {
         Ok(limits) => requirement_edit(state, RequirementPart::OverviewLimits, |settings| {
             settings.overview = limits;

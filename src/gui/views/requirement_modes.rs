@@ -24,13 +24,14 @@ use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, body, small};
 
 /// Row height \[pt\].
 const ROW: f32 = 19.0;
-/// Right edges of the number columns, as a share of the width: modulus and damping ratio, first for
-/// the judged model, then for the identified model.
-const NUMBERS: [f32; 4] = [0.42, 0.515, 0.635, 0.73];
+/// Right edges of the judged model's modulus and damping ratio, as shares of the width.
+const JUDGED_EDGES: [f32; 2] = [0.42, 0.515];
+/// Right edges of the identified model's modulus and damping ratio, as shares of the width.
+const IDENTIFIED_EDGES: [f32; 2] = [0.635, 0.73];
 /// Gap between the last number and the verdict \[pt\].
 const VERDICT_GAP: f32 = 8.0;
 /// Right edge of the name column, as a share of the width.
-const NAME: f32 = 0.32;
+const NAME_EDGE: f32 = 0.32;
 
 /// Draws the modes in the displayed condition, without horizontal scrolling: name, modulus and
 /// damping ratio for the judged and the identified model, verdict. A click shows the poles.
@@ -69,8 +70,11 @@ pub(super) fn modes_detail_ui(
             let width = ui.available_width();
             for mode in modes {
                 let (area, _) = ui.allocate_exact_size(vec2(width, ROW), Sense::hover());
-                let is_selected =
-                    mode.name.map(Requirement::ModeFrequency) == selected && selected.is_some();
+                // A mode without a name has no requirement.
+                let is_selected = match mode.name {
+                    Some(name) => selected == Some(Requirement::ModeFrequency(name)),
+                    None => false,
+                };
                 let row = ModeRow {
                     mode,
                     role,
@@ -82,7 +86,8 @@ pub(super) fn modes_detail_ui(
             let note = if is_coupled {
                 "Couplings move poles; gains, delays and leads do not"
             } else {
-                "Unchanged by gains, delays and leads: only couplings or the physics model move poles"
+                "Unchanged by gains, delays and leads: only couplings or the physics model move \
+                    poles"
             };
             ui.label(palette.small(note));
         });
@@ -91,8 +96,8 @@ pub(super) fn modes_detail_ui(
 fn paint_headings(ui: &Ui, row: Rect, model: &str, palette: &Palette) {
     let painter = ui.painter();
     for (edge, text) in [
-        (NUMBERS[1], format!("{model} \u{3c9}, \u{3b6}")),
-        (NUMBERS[3], "ident. \u{3c9}, \u{3b6}".to_owned()),
+        (JUDGED_EDGES[1], format!("{model} \u{3c9}, \u{3b6}")),
+        (IDENTIFIED_EDGES[1], "ident. \u{3c9}, \u{3b6}".to_owned()),
     ] {
         let at = pos2(row.left() + edge * row.width(), row.center().y);
         painter.text(at, Align2::RIGHT_CENTER, text, small(), palette.dim_text);
@@ -118,30 +123,30 @@ impl ModeRow<'_> {
         } else if response.hovered() || response.has_focus() {
             painter.rect_filled(row, 3.0, palette.raised);
         }
-        let found = self.mode.of_role(self.role);
+        let judged = self.mode.of_role(self.role);
         let name = self.name();
         let left = row.left() + 6.0;
-        let shown = elided(ui, &name, NAME * row.width() - 8.0, BODY_SIZE);
+        let shown = elided(ui, &name, NAME_EDGE * row.width() - 8.0, BODY_SIZE);
         let at = pos2(left, row.center().y);
         painter.text(at, Align2::LEFT_CENTER, shown, body(), palette.text);
-        self.paint_numbers(ui, row, [NUMBERS[0], NUMBERS[1]], found.numbers);
+        self.paint_numbers(ui, row, JUDGED_EDGES, judged.numbers);
         let identified = Some(&self.mode.identified);
-        self.paint_numbers(ui, row, [NUMBERS[2], NUMBERS[3]], identified);
-        let color = match found.verdict {
+        self.paint_numbers(ui, row, IDENTIFIED_EDGES, identified);
+        let color = match judged.verdict {
             ModeVerdict::Outside => palette.warning,
             _ => palette.dim_text,
         };
-        let room = (1.0 - NUMBERS[3]) * row.width() - VERDICT_GAP;
-        let verdict = verdict_words(found.verdict);
+        let room = (1.0 - IDENTIFIED_EDGES[1]) * row.width() - VERDICT_GAP;
+        let verdict = verdict_words(judged.verdict);
         let shown = elided(ui, verdict, room, SMALL_SIZE);
         let at = pos2(
-            row.left() + NUMBERS[3] * row.width() + VERDICT_GAP,
+            row.left() + IDENTIFIED_EDGES[1] * row.width() + VERDICT_GAP,
             row.center().y,
         );
         painter.text(at, Align2::LEFT_CENTER, shown, small(), color);
         let words = match self.mode.name {
-            Some(_) => format!("Mode {name}: {}", mode_verdict_words(found.verdict)),
-            None => format!("{name}: {}", mode_verdict_words(found.verdict)),
+            Some(_) => format!("Mode {name}: {}", mode_verdict_words(judged.verdict)),
+            None => format!("{name}: {}", mode_verdict_words(judged.verdict)),
         };
         let response = named(response, Role::Button, words);
         if response.clicked() {

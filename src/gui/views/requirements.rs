@@ -13,10 +13,11 @@ use gdcm_words::missing_results::{missing_finding_text, reversed_phase_text};
 use gdcm_words::requirement_grid::{count_details_text, met_text};
 
 use super::need::{Need, current_analysis};
+use super::requirement_cells::grid_legend_ui;
 use super::requirement_details::details_ui;
-use super::requirement_grid::{grid_legend_ui, grid_ui};
+use super::requirement_grid::grid_ui;
 use super::requirement_history_jobs::{over_time_need, time_histories_job};
-use super::requirement_limits::limits_menu_ui;
+use super::requirement_limits_menu::limits_menu_ui;
 use super::requirement_selection::shown_grid;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;

@@ -43,9 +43,9 @@ impl ScatterBars<'_> {
         for scatter in &self.uncertainty.scatter {
             let name = state.dataset().pair_name(scatter.pair);
             let same_airspeed = scatter.same_airspeed.as_ref();
-            self.split_ui(ui, &format!("{name} at equal airspeed"), same_airspeed);
+            self.scatter_ui(ui, &format!("{name} at equal airspeed"), same_airspeed);
             let about_schedule = scatter.about_schedule.as_ref();
-            self.split_ui(ui, &format!("{name} about the schedule"), about_schedule);
+            self.scatter_ui(ui, &format!("{name} about the schedule"), about_schedule);
             ui.add_space(3.0);
         }
         ui.add_space(6.0);
@@ -53,11 +53,11 @@ impl ScatterBars<'_> {
 
     /// Draws a row for one kind of scatter: its name, a bar divided among its sources, and its
     /// values.
-    fn split_ui(&self, ui: &mut Ui, name: &str, split: Option<&VarianceDecomposition>) {
+    fn scatter_ui(&self, ui: &mut Ui, name: &str, decomposition: Option<&VarianceDecomposition>) {
         let size = vec2(ui.available_width(), BAR_HEIGHT + 3.0);
         let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
-        let words = match split {
-            Some(split) => split_words(split, self.uncertainty.level),
+        let words = match decomposition {
+            Some(decomposition) => scatter_words(decomposition, self.uncertainty.level),
             None => "no degrees of freedom".to_owned(),
         };
         name_label(&response, format!("{name}: {words}"));
@@ -81,15 +81,20 @@ impl ScatterBars<'_> {
         );
         let top = rect.top() + 1.0;
         let bar = Rect::from_x_y_ranges(left..=right, top..=top + BAR_HEIGHT);
-        self.paint_shares(painter, bar, split);
+        self.paint_shares(painter, bar, decomposition);
         if values.right() > rect.right() {
             response.on_hover_text(format!("{name}: {words}"));
         }
     }
 
     /// Paints the variance shares for trim, identification and unexplained, from left to right.
-    fn paint_shares(&self, painter: &Painter, bar: Rect, split: Option<&VarianceDecomposition>) {
-        let Some(shares) = split.and_then(VarianceDecomposition::shares) else {
+    fn paint_shares(
+        &self,
+        painter: &Painter,
+        bar: Rect,
+        decomposition: Option<&VarianceDecomposition>,
+    ) {
+        let Some(shares) = decomposition.and_then(VarianceDecomposition::shares) else {
             return;
         };
         let mut from = bar.left();
@@ -113,16 +118,16 @@ fn source_colors(palette: &Palette) -> [Color32; 3] {
 }
 
 /// Formats "scatter 6.2 % (sd); 2.7 × expected; unexplained 5.8 % (90 %: 3.6 to 11.6)".
-fn split_words(split: &VarianceDecomposition, level: f64) -> String {
-    let mut words = format!("scatter {:.1} % (sd)", 100.0 * split.scatter.sqrt());
-    if let Some(ratio) = split.ratio() {
+fn scatter_words(decomposition: &VarianceDecomposition, level: f64) -> String {
+    let mut words = format!("scatter {:.1} % (sd)", 100.0 * decomposition.scatter.sqrt());
+    if let Some(ratio) = decomposition.ratio() {
         words.push_str(&format!("; {ratio:.1} × expected"));
     }
     words.push_str(&format!(
         "; unexplained {:.1} %",
-        100.0 * split.unexplained().sqrt()
+        100.0 * decomposition.unexplained().sqrt()
     ));
-    if let Some([low, high]) = split.unexplained_interval(level) {
+    if let Some([low, high]) = decomposition.unexplained_interval(level) {
         words.push_str(&format!(
             " ({:.0} %: {:.1} to {:.1})",
             100.0 * level,

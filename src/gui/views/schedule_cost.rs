@@ -63,7 +63,7 @@ pub(super) fn schedule_cost_view_ui(
             &words,
         )
     };
-    view.set_subject(&state.dataset().pair_name(pair));
+    view.fit_if_subject_changed(&state.dataset().pair_name(pair));
     for event in figure_ui(ui, &scene, &mut view, palette) {
         commands.extend(gain_command(state, event));
     }

@@ -1,12 +1,10 @@
-//! Tables about the schedule: error for each form in fitted and in left-out conditions, error for
-//! each polynomial degree in the signed delays, residuals, and coefficients; with a cache for the
-//! comparisons. The net-gain view and the evidence view draw them.
+//! Tables about the schedule: errors of each form, errors of the signed delays for each polynomial
+//! degree, residuals, and coefficients; with a cache for the comparisons. The net-gain view and the
+//! evidence view draw them.
 //!
-//! *Fit* is a form's error in the conditions to which it is fitted, *left out* its error in each
-//! condition if it is fitted to the others.
-//!
-//! A *form* is a polynomial degree over airspeed, or a table; a *signed delay* is a delay or, if
-//! negative, a lead.
+//! A *form* of the schedule is a polynomial degree over airspeed, or a table. *Fit* is a form's
+//! error in the conditions to which it is fitted, *left out* its error in each condition if it is
+//! fitted to the others. A *signed delay* is a delay or, if negative, a lead.
 
 use std::sync::Arc;
 

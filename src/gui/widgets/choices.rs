@@ -18,15 +18,8 @@ pub fn choice_ui<T: Copy + PartialEq>(
     value: &mut T,
     choices: &[(T, &str, &str)],
 ) {
-    let mut current = "…";
-    for (choice, text, _) in choices {
-        if choice == value {
-            current = text;
-            break;
-        }
-    }
     let shown = ComboBox::from_id_salt(name)
-        .selected_text(current)
+        .selected_text(current_text(choices, value))
         .width(60.0)
         .show_ui(ui, |ui| {
             for (choice, text, hint) in choices {
@@ -38,6 +31,16 @@ pub fn choice_ui<T: Copy + PartialEq>(
         .response
         .widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, name));
     shown.response.on_hover_text(name);
+}
+
+/// Returns the text of the selected choice; "…" if the value is none of the choices.
+fn current_text<'a, T: PartialEq>(choices: &'a [(T, &str, &str)], value: &T) -> &'a str {
+    for (choice, text, _) in choices {
+        if choice == value {
+            return text;
+        }
+    }
+    "…"
 }
 
 /// Option in a page bar: a drop-down list whose closed text is its label and the chosen value.
@@ -57,13 +60,7 @@ impl PageOption<'_> {
         choices: &[(T, &str, &str)],
         palette: &Palette,
     ) {
-        let mut current = "…";
-        for (choice, text, _) in choices {
-            if choice == value {
-                current = text;
-                break;
-            }
-        }
+        let current = current_text(choices, value);
         let text = Self::closed_text_of(self.label, current, palette);
         let arrow = palette.dim_text;
         let shown = ComboBox::from_id_salt(self.name)

@@ -33,22 +33,23 @@ pub const DRAWER_BAR_HEIGHT: f32 = 36.0;
 ///
 /// Call it before the content above the drawer is drawn. The height is remembered; a double click
 /// on the upper edge restores the default.
-pub fn drawer_ui<A: FnOnce(&mut Ui), C: FnOnce(&mut Ui)>(
+pub fn drawer_ui(
     ui: &mut Ui,
     drawer: Drawer<'_>,
     palette: &Palette,
-    tools: A,
-    content: C,
+    tools: impl FnOnce(&mut Ui),
+    content: impl FnOnce(&mut Ui),
 ) -> bool {
     let available = ui.available_height();
-    let most = (available - drawer.min_height).max(0.6 * available);
+    // The view above keeps the drawer's minimum height, but not more than 40 % of the space.
+    let max_height = (available - drawer.min_height).max(0.6 * available);
     restore_panel_size(ui, drawer.name);
     let frame = Frame::new().fill(palette.panel);
     let panel = Panel::bottom(drawer.name)
         .frame(frame)
         .resizable(true)
         .default_size(drawer.default_height)
-        .size_range(drawer.min_height.min(most)..=most);
+        .size_range(drawer.min_height.min(max_height)..=max_height);
     let mut is_closed = false;
     panel.show(ui, |ui| {
         let room = ui.available_rect_before_wrap();
@@ -76,7 +77,8 @@ fn bar_ui(
     ui.painter().hline(bar.x_range(), bar.top(), line);
     ui.painter().hline(bar.x_range(), bar.bottom(), line);
     let inner = bar.shrink2(vec2(12.0, 0.0));
-    let right = in_line_ui(ui, inner, true, |ui| {
+    let from_right = true;
+    let right = in_line_ui(ui, inner, from_right, |ui| {
         let close = named(
             ui.add(Button::new("×").frame(false)),
             Role::Button,
@@ -87,7 +89,7 @@ fn bar_ui(
         close
     });
     let rest = inner.with_max_x(right.response.rect.left() - 8.0);
-    in_line_ui(ui, rest, false, |ui| {
+    in_line_ui(ui, rest, !from_right, |ui| {
         ui.label(RichText::new(drawer.title).font(medium(BODY_SIZE)));
         let color = if drawer.is_warning {
             palette.warning

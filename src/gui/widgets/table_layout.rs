@@ -66,14 +66,14 @@ pub(super) struct TableColumn {
     /// Left edge, relative to the table \[pt\].
     pub left: f32,
     pub width: f32,
-    /// Distance from the left edge to the decimal point \[pt\]; `None` for a text column.
-    point: Option<f32>,
+    /// Distance from the left edge to the decimal points \[pt\]; `None` for a text column.
+    decimal_point: Option<f32>,
 }
 
 impl TableColumn {
     /// Returns the alignment for the heading, and for the cells as a block.
     pub fn align(&self) -> Align {
-        if self.point.is_some() {
+        if self.decimal_point.is_some() {
             Align::Max
         } else {
             Align::Min
@@ -89,7 +89,7 @@ impl TableColumn {
 
     /// Returns the left end of a cell's text, relative to the column's left edge \[pt\].
     fn text_start(&self, ui: &Ui, cell: &str) -> f32 {
-        match self.point {
+        match self.decimal_point {
             Some(point) => point - text_width(ui, before_point(cell), &small()),
             None => 0.0,
         }
@@ -105,7 +105,7 @@ pub(super) struct TableLayout {
     /// Total width \[pt\].
     pub width: f32,
     /// Width to which the last column's text is wrapped \[pt\]; `None` if it is not wrapped.
-    wrapped: Option<f32>,
+    wrap_width: Option<f32>,
 }
 
 impl TableLayout {
@@ -120,23 +120,24 @@ impl TableLayout {
             columns.push(column);
         }
         let mut width = (left - COLUMN_GAP + MARGIN).max(0.0);
-        let mut wrapped = None;
+        let mut wrap_width = None;
         if let Some(last) = columns.last_mut()
-            && last.point.is_none()
+            && last.decimal_point.is_none()
             && width > room
         {
-            let wanted = (last.width - (width - room)).max(LEAST_WRAPPED);
-            if wanted < last.width {
-                width -= last.width - wanted;
-                last.width = wanted;
-                wrapped = Some(wanted);
+            let excess = width - room;
+            let wrapped = (last.width - excess).max(LEAST_WRAPPED);
+            if wrapped < last.width {
+                width -= last.width - wrapped;
+                last.width = wrapped;
+                wrap_width = Some(wrapped);
             }
         }
         let mut layout = Self {
             columns,
             row_edges: Vec::new(),
             width,
-            wrapped,
+            wrap_width,
         };
         layout.row_edges = layout.measured_rows(ui, table, order);
         layout
@@ -147,7 +148,7 @@ impl TableLayout {
         let mut edge = 0.0;
         for &row in order {
             let mut height = ROW_HEIGHT;
-            if self.wrapped.is_some()
+            if self.wrap_width.is_some()
                 && let Some(cell) = table.rows[row].last()
             {
                 let text = self.cell_text(ui, cell, self.columns.len() - 1);
@@ -165,7 +166,7 @@ impl TableLayout {
     pub fn cell_text(&self, ui: &Ui, cell: &str, column: usize) -> Arc<Galley> {
         let text = shown_text(cell).to_owned();
         let placeholder = Color32::PLACEHOLDER;
-        match self.wrapped {
+        match self.wrap_width {
             Some(width) if column + 1 == self.columns.len() => {
                 ui.painter().layout(text, small(), placeholder, width)
             }
@@ -185,9 +186,9 @@ impl TableLayout {
     }
 }
 
-/// Measures a column: as wide as its heading and its widest cell. In a number column, the widest
-/// part before the decimal point and the widest rest count, because the points are aligned; the
-/// block of numbers ends at the right edge.
+/// Measures a column: as wide as its heading and its widest cell. Since the decimal points of a
+/// number column are aligned, its cells need the widest part before the point and the widest part
+/// from the point on; the block of numbers ends at the right edge.
 fn measured_column(ui: &Ui, table: &Table, index: usize, heading: &str, left: f32) -> TableColumn {
     let font = small();
     let heading_width = text_width(ui, heading, &font);
@@ -199,22 +200,22 @@ fn measured_column(ui: &Ui, table: &Table, index: usize, heading: &str, left: f3
         return TableColumn {
             left,
             width,
-            point: None,
+            decimal_point: None,
         };
     }
     let mut before = 0.0_f32;
-    let mut after = 0.0_f32;
+    let mut from_point = 0.0_f32;
     for row in &table.rows {
         let cell = shown_text(&row[index]);
         let width_before = text_width(ui, before_point(cell), &font);
         before = before.max(width_before);
-        after = after.max(text_width(ui, cell, &font) - width_before);
+        from_point = from_point.max(text_width(ui, cell, &font) - width_before);
     }
-    let width = heading_width.max(before + after);
+    let width = heading_width.max(before + from_point);
     TableColumn {
         left,
         width,
-        point: Some(width - after),
+        decimal_point: Some(width - from_point),
     }
 }
 

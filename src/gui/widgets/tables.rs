@@ -1,5 +1,8 @@
 //! Tables in the window. A click on a heading sorts (`sorting.rs`); the menu and Ctrl+C copy, the
-//! menu saves; the arrow keys move through the cells. `table_layout.rs` measures the columns.
+//! menu saves. `table_layout.rs` measures the columns.
+//!
+//! The Tab key stops at a single cell of a table, the *tab stop*; from there the arrow keys move
+//! through the cells, and take the tab stop with them. egui keeps it between frames.
 
 use std::sync::Arc;
 
@@ -153,8 +156,7 @@ struct DrawnTable<'a> {
     palette: &'a Palette,
 }
 
-/// Row and column of a cell, counted on the screen. The entry, the cell at which the keyboard
-/// enters the table, is stored as such a position.
+/// Row and column of a cell, counted on the screen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct CellPlace {
     row: usize,
@@ -283,34 +285,34 @@ impl DrawnTable<'_> {
     }
 
     /// Draws the rows below the headings; returns the clicked cell. A click or an arrow key makes
-    /// another cell the entry.
+    /// another cell the tab stop.
     fn rows_ui<C: From<TableRequest>>(
         &self,
         ui: &mut Ui,
         look: &TableLook<'_>,
         commands: &mut Vec<C>,
     ) -> Option<TableClick> {
-        let mut entry: CellPlace = ui.data(|data| data.get_temp(self.id)).unwrap_or_default();
-        entry.row = entry.row.min(self.order.len().saturating_sub(1));
+        let mut tab_stop: CellPlace = ui.data(|data| data.get_temp(self.id)).unwrap_or_default();
+        tab_stop.row = tab_stop.row.min(self.order.len().saturating_sub(1));
         let mut clicked = None;
-        let mut next_entry = entry;
+        let mut next_tab_stop = tab_stop;
         for (place, &row) in self.order.iter().enumerate() {
             self.paint_row(ui, place, (look.selected)(row));
             for column in 0..self.table.columns.len() {
                 let at = CellPlace { row: place, column };
                 let color = (look.color)(row, column);
-                let response = self.cell_ui(ui, at, at == entry, color, commands);
+                let response = self.cell_ui(ui, at, at == tab_stop, color, commands);
                 if response.clicked() {
                     clicked = Some(TableClick { row, column });
-                    next_entry = at;
+                    next_tab_stop = at;
                 }
-                if at == entry && response.has_focus() {
-                    next_entry = self.moved_entry(ui, &response, entry, commands);
+                if at == tab_stop && response.has_focus() {
+                    next_tab_stop = self.moved_tab_stop(ui, &response, tab_stop, commands);
                 }
             }
         }
-        if next_entry != entry {
-            ui.data_mut(|data| data.insert_temp(self.id, next_entry));
+        if next_tab_stop != tab_stop {
+            ui.data_mut(|data| data.insert_temp(self.id, next_tab_stop));
         }
         clicked
     }
@@ -337,13 +339,13 @@ impl DrawnTable<'_> {
         ui.painter().rect_filled(rect, 0.0, fill);
     }
 
-    /// Draws a cell. The Tab key stops at only one cell in a table, the entry: only a focusable
-    /// sense (`Sense::click()`, not `Sense::CLICK`) lets it stop.
+    /// Draws a cell. The Tab key stops only at a focusable sense: `Sense::click()`, not
+    /// `Sense::CLICK`.
     fn cell_ui<C: From<TableRequest>>(
         &self,
         ui: &mut Ui,
         at: CellPlace,
-        is_entry: bool,
+        is_tab_stop: bool,
         color: Option<Color32>,
         commands: &mut Vec<C>,
     ) -> Response {
@@ -352,7 +354,7 @@ impl DrawnTable<'_> {
         // A cell that has just received the focus would lose it without a focusable sense.
         let id = self.cell_id(at);
         let is_focused = ui.memory(|memory| memory.has_focus(id));
-        let sense = if is_entry || is_focused {
+        let sense = if is_tab_stop || is_focused {
             Sense::click()
         } else {
             Sense::CLICK
@@ -376,13 +378,13 @@ impl DrawnTable<'_> {
         response
     }
 
-    /// Applies the keys pressed while the entry cell has the focus: arrows, Home and End move it,
-    /// Ctrl+C copies the table. Returns the cell that has the focus afterwards.
-    fn moved_entry<C: From<TableRequest>>(
+    /// Applies the keys pressed while the tab stop has the focus: arrows, Home and End move both,
+    /// Ctrl+C copies the table. Returns the cell that has them afterwards.
+    fn moved_tab_stop<C: From<TableRequest>>(
         &self,
         ui: &Ui,
         response: &Response,
-        entry: CellPlace,
+        tab_stop: CellPlace,
         commands: &mut Vec<C>,
     ) -> CellPlace {
         const KEYS: [Key; 6] = [
@@ -396,7 +398,7 @@ impl DrawnTable<'_> {
         if ui.input(|input| input.events.contains(&Event::Copy)) {
             commands.push(TableRequest::Copy(self.as_drawn().text()).into());
         }
-        let mut moved = entry;
+        let mut moved = tab_stop;
         for key in KEYS {
             if ui.input_mut(|input| input.consume_key(egui::Modifiers::NONE, key)) {
                 moved = moved.moved(key, self.order.len(), self.table.columns.len());
@@ -409,11 +411,11 @@ impl DrawnTable<'_> {
         };
         ui.memory_mut(|memory| {
             memory.set_focus_lock_filter(response.id, filter);
-            if moved != entry {
+            if moved != tab_stop {
                 memory.request_focus(self.cell_id(moved));
             }
         });
-        if moved != entry {
+        if moved != tab_stop {
             let x = self.column_range(moved.column);
             let y = self.row_range(moved.row);
             // The row must not be hidden by the headings.

@@ -2,7 +2,7 @@
 //! typing.
 
 use gdcm::gui::commands::records::RecordsCommand;
-use gdcm::gui::state::records::WantedDataset;
+use gdcm::gui::state::records::DatasetForm;
 
 use super::records::rows_shown;
 use super::views::{give, show};
@@ -23,8 +23,8 @@ fn asked(log: &str, bytes: &[u8]) -> (Window, tempfile::TempDir) {
     (window, folder)
 }
 
-fn wanted(window: &Window) -> &WantedDataset {
-    &state(window).records.wanted
+fn wanted(window: &Window) -> &DatasetForm {
+    &state(window).records.dataset_form
 }
 
 /// Makes the proposed dataset, and returns the notes of its record.
@@ -57,7 +57,7 @@ fn a_log_of_px4_proposes_its_setpoints_and_rates() {
         "quadrotor.ulg",
         include_bytes!("../../data/logs/quadrotor.ulg"),
     );
-    let WantedDataset {
+    let DatasetForm {
         inputs, outputs, ..
     } = wanted(&window);
     assert!(
@@ -97,7 +97,7 @@ fn a_log_of_ardupilot_proposes_outputs_of_its_controller_and_rates_of_its_identi
         );
     }
     let (mut window, _folder) = asked("00000042.log", text.as_bytes());
-    let WantedDataset {
+    let DatasetForm {
         inputs,
         outputs,
         columns,
@@ -134,7 +134,7 @@ fn a_log_of_betaflight_proposes_sums_of_its_controller_and_its_gyroscope() {
         "two-flights.bbl",
         include_bytes!("../../data/logs/two-flights.bbl"),
     );
-    let WantedDataset {
+    let DatasetForm {
         inputs, outputs, ..
     } = wanted(&window);
     assert_eq!(

@@ -56,7 +56,7 @@ fn doubtful() -> (Window, tempfile::TempDir) {
     wait_until(&mut window, "the records", |window| records(window) == 4);
     window.get_by_label("Identify").click();
     wait_until(&mut window, "the models", |window| {
-        state(window).records.conditions[&OF].found.is_some()
+        state(window).records.conditions[&OF].latest.is_some()
     });
     settle(&mut window);
     (window, folder)

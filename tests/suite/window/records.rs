@@ -240,8 +240,8 @@ fn the_example_s_records_become_models_that_are_taken_and_given_back_by_their_la
 /// intervals.
 fn assert_next_flight(window: &Window) {
     let records = &state(window).records.conditions[&CONDITION_10_ID];
-    let (job, _) = records.found.as_ref().unwrap();
-    let plan = job.news().next_flight.expect("a plan");
+    let latest = records.latest.as_ref().unwrap();
+    let plan = latest.job.news().next_flight.expect("a plan");
     let dataset = state(window).dataset();
     assert_eq!(plan.sweeps.len(), dataset.inputs().len());
     let title = format!("sweep of {} (amplitude", dataset.inputs()[0].name);
@@ -292,10 +292,10 @@ fn all_conditions_are_identified_by_default_and_their_fits_are_used_in_one_step(
     let before = state(&window).study.clone();
     window.get_by_label("Identify all 2").click();
     wait_until(&mut window, "the first of them", |window| {
-        !state(window).records.running.is_empty()
+        !state(window).records.jobs.is_empty()
     });
     wait_until(&mut window, "the end", |window| {
-        state(window).records.running.is_empty()
+        state(window).records.jobs.is_empty()
     });
     window.run_steps(2);
     assert!(is_finished(&window, 3) && is_finished(&window, 10));
@@ -569,7 +569,7 @@ fn records_are_chosen_held_out_and_left_out_and_an_identification_is_stopped() {
     assert!(state(&window).records.job_of(CONDITION_10_ID).is_some());
     window.get_by_label("Stop identifying").click();
     window.run_steps(3);
-    assert!(state(&window).records.running.is_empty());
+    assert!(state(&window).records.jobs.is_empty());
     assert!(
         state(&window).records.conditions[&CONDITION_10_ID]
             .identification()
@@ -594,10 +594,13 @@ fn of_several_conditions_the_one_shown_is_identified_first_and_the_others_say_wh
     wait_for_background(&mut window);
     window.get_by_label("Identify all 2").click();
     wait_until(&mut window, "a step of the first", |window| {
-        state(window).records.under_way().is_some()
+        state(window).records.running_job().is_some()
     });
     assert_eq!(
-        state(&window).records.under_way().map(|job| job.condition),
+        state(&window)
+            .records
+            .running_job()
+            .map(|job| job.condition),
         Some(CONDITION_10_ID)
     );
     window.get_by_label(condition_3).click();
@@ -607,7 +610,7 @@ fn of_several_conditions_the_one_shown_is_identified_first_and_the_others_say_wh
     assert!(matches!(status(&window, 10), FitStatus::Running { .. }));
     window.get_by_label("Stop identifying").click();
     window.run_steps(2);
-    assert!(state(&window).records.running.is_empty());
+    assert!(state(&window).records.jobs.is_empty());
     assert_notice(&window, NoticeKind::Done, "identification-stopped", &["2"]);
     window.get_by_label("Identify all 2");
 }
@@ -615,7 +618,7 @@ fn of_several_conditions_the_one_shown_is_identified_first_and_the_others_say_wh
 #[test]
 fn the_work_of_the_view_is_stopped_beside_its_progress_and_elsewhere_in_the_status_bar() {
     fn is_running(window: &Window) -> bool {
-        !state(window).records.running.is_empty()
+        !state(window).records.jobs.is_empty()
     }
 
     let mut window = records_window();
@@ -623,7 +626,7 @@ fn the_work_of_the_view_is_stopped_beside_its_progress_and_elsewhere_in_the_stat
     wait_for_background(&mut window);
     window.get_by_label("Identify all 2").click();
     wait_until(&mut window, "a step of the first", |window| {
-        state(window).records.under_way().is_some()
+        state(window).records.running_job().is_some()
     });
     window.get_by_label("Stop identifying");
     give(&mut window, ComputingCommand::StopComputing);
@@ -1006,10 +1009,10 @@ fn all_conditions_come_from_one_archive_as_the_readme_says() {
     }
     window.get_by_label("Identify all 11").click();
     wait_until(&mut window, "the first of them", |window| {
-        !state(window).records.running.is_empty()
+        !state(window).records.jobs.is_empty()
     });
     wait_until(&mut window, "the end", |window| {
-        state(window).records.running.is_empty()
+        state(window).records.jobs.is_empty()
     });
     window.run_steps(2);
     let table = condition_table(state(&window));
@@ -1345,7 +1348,7 @@ fn what_is_late_in_all_records_and_a_band_that_they_do_not_show_are_mended_by_th
     });
     window.get_by_label("Identify").click();
     wait_until(&mut window, "the models", |window| {
-        records(window).is_some_and(|of| of.found.is_some())
+        records(window).is_some_and(|of| of.latest.is_some())
     });
     settle(&mut window);
     for _ in 0..2 {
@@ -1423,9 +1426,9 @@ fn the_quadrotor_is_identified_in_the_window_from_its_log_alone() {
     }
     click(&mut window, "Make the dataset");
     wait_until(&mut window, "an answer", |window| {
-        !state(window).records.wanted.problems.is_empty()
+        !state(window).records.dataset_form.problems.is_empty()
     });
-    let problems = &state(&window).records.wanted.problems;
+    let problems = &state(&window).records.dataset_form.problems;
     assert!(
         problems
             .iter()
@@ -1513,10 +1516,9 @@ fn the_quadrotor_is_identified_in_the_window_from_its_log_alone() {
     click(&mut window, "Identify");
     wait_until(&mut window, "the models by reference", |window| {
         let records = &state(window).records.conditions[&of];
-        records
-            .found
-            .as_ref()
-            .is_some_and(|(job, found)| job.request.options.references == 1 && found.is_ok())
+        records.latest.as_ref().is_some_and(|latest| {
+            latest.job.request.options.references == 1 && latest.outcome.is_ok()
+        })
     });
     let found = state(&window).records.conditions[&of]
         .identification()
@@ -1594,7 +1596,7 @@ fn topics_with_clocks_of_their_own_become_the_record_of_a_dataset() {
     }
 
     fn problems(window: &Window) -> Vec<&'static str> {
-        let problems = state(window).records.wanted.problems.iter();
+        let problems = state(window).records.dataset_form.problems.iter();
         problems.map(|problem| problem.code).collect()
     }
 
@@ -1685,11 +1687,11 @@ fn the_physics_model_of_the_real_aircraft_is_corrected_from_its_flights() {
     click(&mut window, "Identify all 2");
     wait_until(&mut window, "the end", |window| {
         let records = &state(window).records;
-        records.running.is_empty()
+        records.jobs.is_empty()
             && records
                 .conditions
                 .values()
-                .all(|records| records.found.is_some())
+                .all(|records| records.latest.is_some())
     });
     window.run_steps(2);
     give(

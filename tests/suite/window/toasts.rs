@@ -78,12 +78,12 @@ fn the_name_of_the_dataset_returns_after_a_toast() {
 #[test]
 fn a_visible_change_produces_no_message() {
     let mut window = window();
-    let before = state(&window).notices.messages().len();
+    let before = state(&window).notices.kept().len();
     click(&mut window, "Keep physics model V+10kt");
     let edit = Edit::Hold(pair(&window, "P", "LON"), true);
     window.state_mut().dispatch(edit);
     settle(&mut window);
-    assert_eq!(state(&window).notices.messages().len(), before);
+    assert_eq!(state(&window).notices.kept().len(), before);
 }
 
 #[test]

@@ -161,7 +161,7 @@ fn waiting_words(state: &State) -> String {
     if let Some(message) = state.incomplete_results() {
         return message.text;
     }
-    match state.forms.export.set() {
+    match state.forms.export.export_set() {
         Ok(_) => "computing …".to_owned(),
         Err(message) => message.text,
     }

@@ -50,7 +50,8 @@ pub(super) fn column_headings_ui(
     }
 }
 
-/// Shows buttons with the possible units for a column whose unit is unknown.
+/// Shows buttons with the possible units for a column whose unit is unknown; a click sets the unit
+/// in all tables with the same headings and the same missing units.
 fn possible_units_ui(
     ui: &mut Ui,
     assembly: &AssemblyState,
@@ -58,22 +59,22 @@ fn possible_units_ui(
     column: usize,
     commands: &mut Vec<Command>,
 ) {
-    let Some(open) = assembly.missing_units.get(file) else {
+    let Some(missing_units) = assembly.missing_units.get(file) else {
         return;
     };
-    let Some(open) = open.iter().find(|open| open.column == column) else {
+    let Some(missing) = missing_units.iter().find(|unit| unit.column == column) else {
         return;
     };
-    let files = assembly.tables_alike(file).len();
+    let alike_count = assembly.tables_alike(file).len();
     ui.horizontal(|ui| {
-        for unit in &open.units {
+        for unit in &missing.units {
             let name = format!("Column {} of {file} is in {unit}", column + 1);
-            let hint = if files == 1 {
+            let hint = if alike_count == 1 {
                 format!("The values are in {unit}")
             } else {
                 format!(
                     "The values are in {unit}, also in the {} other tables with these headings",
-                    files - 1
+                    alike_count - 1
                 )
             };
             let button = named(ui.small_button(*unit), Role::Button, name);

@@ -15,10 +15,14 @@ use crate::gui::widgets::list_row::ROW_HEIGHT;
 use crate::gui::widgets::painted_text::painted_text;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE, small};
 
-/// Index of the column in which incomplete models are marked.
-const FILE: usize = COLUMNS.len() - 1;
+/// Index of the column with the file, in which incomplete models are marked.
+const FILE_COLUMN: usize = COLUMNS.len() - 1;
 /// Left padding in headings and cells \[pt\].
 const CELL_PAD: f32 = 3.0;
+/// Room for the scroll bar at the right of the rows \[pt\].
+const SCROLL_BAR: f32 = 12.0;
+/// Room in a heading for padding and sort mark \[pt\].
+const SORT_MARK: f32 = 18.0;
 
 /// Draws the table; only visible rows are laid out.
 pub(super) fn table_ui(
@@ -27,7 +31,7 @@ pub(super) fn table_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    let width = ui.available_width() - 12.0;
+    let width = ui.available_width() - SCROLL_BAR;
     headings_ui(ui, assembly, width, palette, commands);
     let table = Table {
         assembly,
@@ -71,7 +75,7 @@ fn headings_ui(
         } else {
             palette.dim_text
         };
-        let text = elided(ui, column.heading, room - 18.0, SMALL_SIZE);
+        let text = elided(ui, column.heading, room - SORT_MARK, SMALL_SIZE);
         let text = format!("{text}{mark}");
         painted_text(ui, place, CELL_PAD, &text, small(), color);
         heading
@@ -138,7 +142,7 @@ impl Table<'_> {
         let mut left = rect.left();
         for (index, column) in COLUMNS.iter().enumerate() {
             let mut text = column.text(part);
-            let is_marked = is_incomplete && index == FILE;
+            let is_marked = is_incomplete && index == FILE_COLUMN;
             let color = self.cell_color(&text, part, is_marked);
             if is_marked {
                 text = format!("⚠ {text}");
@@ -146,7 +150,7 @@ impl Table<'_> {
             let others = neighbours.map(|other| Some(column.text(other?)));
             let others = others.each_ref().map(Option::as_deref);
             let room = rect.width() * column.share;
-            let text = elided_among(ui, &text, others, room - 6.0, SMALL_SIZE);
+            let text = elided_among(ui, &text, others, room - 2.0 * CELL_PAD, SMALL_SIZE);
             let place = Rect::from_x_y_ranges(left..=left + room, rect.y_range());
             painted_text(ui, place, CELL_PAD, &text, small(), color);
             left += room;

@@ -1,5 +1,5 @@
-//! Bar above the table: model folders and files, undo and cancel, reading progress. The *parts* are
-//! the models found so far.
+//! Bar above the table: model folders and files, undo and cancel, reading progress. A *part* is a
+//! model found in the files.
 
 use egui::{Button, RichText, Ui};
 
@@ -12,6 +12,9 @@ use crate::gui::state::assembling::AssemblyState;
 use crate::gui::widgets::controls::button_ui;
 use crate::gui::widgets::palette::Palette;
 use crate::gui::widgets::text_fields::is_entered;
+
+/// Bytes in a mebibyte, the unit of the reading progress.
+const BYTES_PER_MIB: u64 = 1 << 20;
 
 pub(super) fn source_bar_ui(
     ui: &mut Ui,
@@ -47,7 +50,9 @@ fn add_ui(ui: &mut Ui, assembly: &mut AssemblyState, commands: &mut Vec<Command>
         &mut assembly.source_path,
         "path of a folder or file, or drop it here",
     );
-    if !std::mem::replace(&mut assembly.had_focus, true) {
+    // The field has the focus when the import opens, and only then.
+    if !assembly.had_focus {
+        assembly.had_focus = true;
         field.request_focus();
     }
     let is_entered = is_entered(ui, &field);
@@ -75,11 +80,11 @@ fn reading_ui(
         return;
     };
     ui.spinner();
-    let megabytes = reading.read_bytes >> 20;
-    let values = if megabytes == 0 {
+    let mebibytes = reading.read_bytes / BYTES_PER_MIB;
+    let values = if mebibytes == 0 {
         String::new()
     } else {
-        format!(", {megabytes} MiB of values")
+        format!(", {mebibytes} MiB of values")
     };
     ui.label(palette.small(format!(
         "reading {} of {}: {}{values}",

@@ -1,5 +1,7 @@
 //! Responses and poles in the displayed condition, with unchanged and with changed physics
 //! parameters.
+//!
+//! G and D are the gain and the delay that would match a response (M6: docs/method.md).
 
 use egui::{RichText, Ui, Vec2, vec2};
 
@@ -14,9 +16,9 @@ use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium};
 /// Minimum plot size \[pt\].
 const LEAST_PLOT: Vec2 = vec2(90.0, 60.0);
 /// Width that a plot needs to be readable \[pt\].
-const READABLE: f32 = 150.0;
+const READABLE_WIDTH: f32 = 150.0;
 /// Maximum count of responses shown.
-const MOST: f32 = 6.0;
+const MOST_RESPONSES: f32 = 6.0;
 
 /// Draws the most improved responses, as many as fit, and the poles.
 pub(super) fn change_ui(
@@ -26,13 +28,14 @@ pub(super) fn change_ui(
     palette: &Palette,
 ) {
     let condition = state.condition().id();
-    // One plot shows the poles.
-    let most = (ui.available_width() / READABLE - 1.0).clamp(1.0, MOST) as usize;
+    // One plot shows the poles, the others a response each.
+    let most_responses =
+        (ui.available_width() / READABLE_WIDTH - 1.0).clamp(1.0, MOST_RESPONSES) as usize;
     let figure = physics_change_figure(
         assessment,
         state.dataset(),
         condition,
-        most,
+        most_responses,
         state.display.curves.unit,
     )
     .unwrap_or_default();
@@ -41,12 +44,13 @@ pub(super) fn change_ui(
         let context = format!("condition {condition}, each response with its own G and D");
         ui.label(palette.small(&context)).on_hover_text(
             "The channels correct gain and delay, so each response is shown after its own G and D \
-            (eq. (5) and (9) in docs/method.md); J is the remaining cost. The most improved responses come first.",
+            (eq. (5) and (9) in docs/method.md); J is the remaining cost. The most improved \
+            responses come first.",
         );
     });
     figure_legend_ui(ui, &figure, palette);
     let view = &mut state.display.physics.change;
-    view.set_subject(&figure.title);
+    view.fit_if_subject_changed(&figure.title);
     let scene = FigureScene {
         zooms: true,
         is_stacked: true,

@@ -4,7 +4,8 @@
 //! The terms are those of docs/physics.md (M18.3, M18.4): *explained* is the share of the misfit
 //! that a parameter removes in conditions left out of its fit, alone or when added to the
 //! parameters before it; *learned* is the share of the prior variance that the data remove; the
-//! prior is the *plausible* standard deviation of the change.
+//! prior is the *plausible* standard deviation of the change. The interval about a value has
+//! several sources; their shares of its variance are listed.
 
 use egui::{Label, RichText, ScrollArea, Ui};
 
@@ -30,7 +31,7 @@ use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium};
 use crate::gui::widgets::tables::{Sorting, TableLook, table_grid_ui};
 
 /// Number field width \[pt\].
-const FIELD: f32 = 70.0;
+const FIELD_WIDTH: f32 = 70.0;
 
 /// Draws the evidence in the right panel, below the verdict.
 pub fn physics_evidence_ui(
@@ -123,7 +124,9 @@ impl Evidence<'_> {
             ui.label(self.palette.small("plausible ±"));
             let label = format!("Plausible change of {name}");
             let shown = gdcm_model::units::number(diagnosed.parameter.plausible_sd);
-            if let Some(plausible_sd) = number_entry_ui(ui, &label, &shown, "", FIELD, commands) {
+            if let Some(plausible_sd) =
+                number_entry_ui(ui, &label, &shown, "", FIELD_WIDTH, commands)
+            {
                 commands.push(decision(name, ParameterDecision::PlausibleSd(plausible_sd)));
             }
             ui.label(self.palette.small(&diagnosed.parameter.unit));
@@ -133,7 +136,7 @@ impl Evidence<'_> {
                 Some(change) => gdcm_model::units::number(*change),
                 None => String::new(),
             };
-            if let Some(change) = number_entry_ui(ui, &label, &shown, "", FIELD, commands) {
+            if let Some(change) = number_entry_ui(ui, &label, &shown, "", FIELD_WIDTH, commands) {
                 commands.push(decision(name, ParameterDecision::Value(change)));
             }
         });
@@ -238,12 +241,14 @@ fn decision(name: &str, decision: ParameterDecision) -> Command {
 fn evidence_table(diagnosed: &DiagnosedParameter<'_>, findings: &PhysicsFindings) -> Table {
     let diagnosis = diagnosed.diagnosis;
     let mut table = Table::new("Evidence", ["quantity", "value"]);
-    if let Some(ratio_alone) = diagnosis.ratio_alone {
-        let percent = decimals(100.0 * (1.0 - ratio_alone), 0);
+    // The ratio is the share of the misfit that remains.
+    if let Some(remaining_share) = diagnosis.ratio_alone {
+        let percent = decimals(100.0 * (1.0 - remaining_share), 0);
         table.row(["explained alone".to_owned(), format!("{percent} %")]);
     }
-    if let (Some(step), Some(gain)) = (diagnosis.step, diagnosis.gain) {
-        let percent = decimals(100.0 * gain, 1);
+    // The gain is the share of the misfit that the parameter's step removes.
+    if let (Some(step), Some(explained_share)) = (diagnosis.step, diagnosis.gain) {
+        let percent = decimals(100.0 * explained_share, 1);
         table.row([
             "explained when added".to_owned(),
             format!("{percent} %, step {step}"),

@@ -22,7 +22,7 @@ mod use_parameters;
 
 use std::sync::Arc;
 
-use egui::{Frame, Label, Margin, RichText, ScrollArea, Ui, UiBuilder, Vec2, vec2};
+use egui::{Frame, Label, Margin, Rect, RichText, ScrollArea, Ui, UiBuilder, Vec2, vec2};
 
 use gdcm_plot::figure::marks::MarkId;
 use gdcm_plot::figure::physics::physics_figure;
@@ -49,10 +49,14 @@ pub use evidence::physics_evidence_ui;
 pub use parameter_list::parameter_list_ui;
 pub use use_parameters::{physics_header_ui, physics_job, unused_named};
 
-/// Height of the verdict sentence's box \[pt\].
-const SENTENCE: f32 = 52.0;
-/// Margin above and below the verdict sentence \[pt\].
-const SENTENCE_MARGIN: i8 = 8;
+/// Height of the verdict's box \[pt\].
+const VERDICT_HEIGHT: f32 = 52.0;
+/// Margin above and below the verdict \[pt\].
+const VERDICT_MARGIN: i8 = 8;
+/// Gap between ranking and correlation matrix \[pt\].
+const COLUMN_GAP: f32 = 14.0;
+/// Gap between the selected parameter's plots and those before and after \[pt\].
+const ROW_GAP: f32 = 8.0;
 /// Minimum plot size \[pt\].
 const LEAST_PLOT: Vec2 = vec2(220.0, 120.0);
 /// Width for the correlation matrix, as a share of the view width.
@@ -61,7 +65,7 @@ const CORRELATION_PART: f32 = 0.33;
 /// before and after have the rest.
 const CONDITIONS_PART: f32 = 0.46;
 /// Minimum view height for showing everything at once \[pt\].
-const LEAST_WHOLE: f32 = 640.0;
+const LEAST_HEIGHT_FOR_EVERYTHING: f32 = 640.0;
 
 /// Returns the pages; none in a window that shows everything at once, as [`physics_view_ui`]
 /// decided in the last frame.
@@ -78,7 +82,8 @@ pub fn physics_pages(state: &State) -> Vec<PageEntry> {
             ),
             PhysicsPage::Correlation => (
                 "Correlation",
-                "Parameters that cannot be told apart, and the share of each that gains and delays can imitate",
+                "Parameters that cannot be told apart, and the share of each that gains and \
+                    delays can imitate",
             ),
             PhysicsPage::Conditions => (
                 "Conditions",
@@ -118,7 +123,7 @@ pub fn physics_view_ui(
 ) {
     // Step 1.
     state.display.physics.shows_everything =
-        state.display.layout.is_wide && ui.available_height() >= LEAST_WHOLE;
+        state.display.layout.is_wide && ui.available_height() >= LEAST_HEIGHT_FOR_EVERYTHING;
     // Step 2.
     let assessment = match state.physics().cloned() {
         Some(Some(Ok(assessment))) => assessment,
@@ -138,7 +143,7 @@ pub fn physics_view_ui(
         return;
     };
     // Step 3.
-    sentence_ui(ui, &findings, palette);
+    verdict_ui(ui, &findings, palette);
     let selected = state.selected_parameter(&findings);
     let ranking = Ranking {
         findings: &findings,
@@ -152,30 +157,14 @@ pub fn physics_view_ui(
     };
     // Step 4.
     if state.display.physics.shows_everything {
-        ui.add_space(6.0);
-        let height = ranking.height().min(0.5 * ui.available_height());
-        let room = ui.available_rect_before_wrap();
-        let room = room.with_max_y(room.top() + height);
-        let middle = room.right() - CORRELATION_PART * room.width();
-        ui.scope_builder(UiBuilder::new().max_rect(room.with_max_x(middle)), |ui| {
-            ranking_ui(ui, &ranking, height, commands)
-        });
-        let right = room.with_min_x(middle + 14.0);
-        ui.scope_builder(UiBuilder::new().max_rect(right), |ui| {
-            matrix.ui(ui, commands)
-        });
-        ui.advance_cursor_after_rect(room);
-        ui.add_space(6.0);
-        let rest = ui.available_rect_before_wrap();
-        let middle = rest.top() + CONDITIONS_PART * rest.height();
-        ui.scope_builder(UiBuilder::new().max_rect(rest.with_max_y(middle)), |ui| {
-            conditions_ui(ui, state, &findings, &assessment, palette, commands)
-        });
-        let below = rest.with_min_y(middle + 8.0);
-        ui.scope_builder(UiBuilder::new().max_rect(below), |ui| {
-            change_ui(ui, state, &assessment, palette)
-        });
-        ui.advance_cursor_after_rect(rest);
+        let parts = PhysicsParts {
+            ranking,
+            matrix,
+            findings: &findings,
+            assessment: &assessment,
+            palette,
+        };
+        parts.ui(ui, state, commands);
         return;
     }
     match state.display.physics.page {
@@ -191,6 +180,50 @@ pub fn physics_view_ui(
     }
 }
 
+/// Parts of the view that are drawn at once in a large window.
+struct PhysicsParts<'a> {
+    ranking: Ranking<'a>,
+    matrix: CorrelationMatrix<'a>,
+    findings: &'a Arc<PhysicsFindings>,
+    assessment: &'a PhysicsAssessment,
+    palette: &'a Palette,
+}
+
+impl PhysicsParts<'_> {
+    /// Draws, from top to bottom: the ranking with the correlation at its right, at most half as
+    /// high as the view; the selected parameter in each condition; the plots before and after.
+    fn ui(&self, ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) {
+        ui.add_space(6.0);
+        let height = self.ranking.height().min(0.5 * ui.available_height());
+        let room = ui.available_rect_before_wrap();
+        let top = room.with_max_y(room.top() + height);
+        let middle = top.right() - CORRELATION_PART * top.width();
+        draw_within(ui, top.with_max_x(middle), |ui| {
+            ranking_ui(ui, &self.ranking, height, commands);
+        });
+        draw_within(ui, top.with_min_x(middle + COLUMN_GAP), |ui| {
+            self.matrix.ui(ui, commands);
+        });
+        ui.advance_cursor_after_rect(top);
+        ui.add_space(6.0);
+        let below = ui.available_rect_before_wrap();
+        let middle = below.top() + CONDITIONS_PART * below.height();
+        draw_within(ui, below.with_max_y(middle), |ui| {
+            let palette = self.palette;
+            conditions_ui(ui, state, self.findings, self.assessment, palette, commands);
+        });
+        draw_within(ui, below.with_min_y(middle + ROW_GAP), |ui| {
+            change_ui(ui, state, self.assessment, self.palette);
+        });
+        ui.advance_cursor_after_rect(below);
+    }
+}
+
+/// Draws with `add` into an area.
+fn draw_within(ui: &mut Ui, area: Rect, add: impl FnOnce(&mut Ui)) {
+    ui.scope_builder(UiBuilder::new().max_rect(area), add);
+}
+
 fn ranking_ui(ui: &mut Ui, ranking: &Ranking<'_>, height: f32, commands: &mut Vec<Command>) {
     ScrollArea::vertical()
         .id_salt("ranking of parameters")
@@ -200,13 +233,13 @@ fn ranking_ui(ui: &mut Ui, ranking: &Ranking<'_>, height: f32, commands: &mut Ve
 }
 
 /// Draws the verdict in a box with constant height.
-fn sentence_ui(ui: &mut Ui, findings: &PhysicsFindings, palette: &Palette) {
+fn verdict_ui(ui: &mut Ui, findings: &PhysicsFindings, palette: &Palette) {
     let frame = Frame::new()
         .fill(palette.raised)
         .corner_radius(6.0)
-        .inner_margin(Margin::symmetric(12, SENTENCE_MARGIN));
+        .inner_margin(Margin::symmetric(12, VERDICT_MARGIN));
     frame.show(ui, |ui| {
-        let height = SENTENCE - 2.0 * f32::from(SENTENCE_MARGIN);
+        let height = VERDICT_HEIGHT - 2.0 * f32::from(VERDICT_MARGIN);
         ui.set_min_size(vec2(ui.available_width(), height));
         ui.set_max_height(height);
         let text = verdict_text(findings);
@@ -220,9 +253,10 @@ fn failure_ui(ui: &mut Ui, failure: &PhysicsFailure, palette: &Palette) {
     ui.add_space(8.0);
     ui.add(Label::new(RichText::new(failure.to_string()).size(BODY_SIZE)).wrap());
     if matches!(failure, PhysicsFailure::NoRuns) {
-        let text = "Rerun the linearisation with one named parameter changed, once or twice for each \
-            parameter and condition, and import the models: names such as \"Ixx+5%\" are recognised. \
-            \"Find the cause\" suggests reruns for the errors of this condition (docs/physics.md).";
+        let text = "Rerun the linearisation with one named parameter changed, once or twice for \
+            each parameter and condition, and import the models: names such as \"Ixx+5%\" are \
+            recognised. \"Find the cause\" suggests reruns for the errors of this condition \
+            (docs/physics.md).";
         ui.add(Label::new(palette.dim(text)).wrap());
     }
 }
@@ -245,7 +279,7 @@ fn conditions_ui(
         .figures
         .remove(&View::Physics)
         .unwrap_or_default();
-    view.set_subject(&figure.title);
+    view.fit_if_subject_changed(&figure.title);
     let scene = FigureScene {
         zooms: true,
         highlighted: Some(MarkId::Condition(state.condition().id())),
@@ -263,7 +297,9 @@ fn conditions_ui(
             FigureEvent::Clicked(_, MarkId::Condition(id), _) => {
                 commands.push(SelectionCommand::SelectCondition(id).into());
             }
-            FigureEvent::StatusText(words) => commands.push(SelectionCommand::Tell(words).into()),
+            FigureEvent::StatusText(words) => {
+                commands.push(SelectionCommand::ShowStatus(words).into())
+            }
             _ => {}
         }
     }

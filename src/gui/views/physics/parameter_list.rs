@@ -45,8 +45,8 @@ pub fn parameter_list_ui(
         ui.label(palette.small(count));
     });
     ui.horizontal(|ui| {
-        let hint = "A run is a physics model linearised with one parameter changed. Import the runs \
-            together with the other models; names such as \"Ixx+5%\" are recognised";
+        let hint = "A run is a physics model linearised with one parameter changed. Import the \
+            runs together with the other models; names such as \"Ixx+5%\" are recognised";
         let button = Button::new("Import models…");
         button_ui(ui, button, hint, AssemblingCommand::Open, commands);
         ui.label(palette.small("with runs"));

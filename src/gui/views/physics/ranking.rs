@@ -1,7 +1,9 @@
 //! Ranking of the physics parameters: change with its interval, position on an axis of plausible
-//! changes, share of the misfit that each explains, and verdict (M18.4: docs/physics.md). The unit
-//! of that axis is the parameter's plausible standard deviation, the engineer's prior for its
-//! change. A parameter is *named* if the diagnosis proposes its change.
+//! changes, share of the misfit that each explains, and verdict (M18.4: docs/physics.md).
+//!
+//! The unit of that axis is the parameter's *plausible* standard deviation, the engineer's prior
+//! for its change; `z` is a change in this unit. A parameter is *named* if the diagnosis proposes
+//! its change.
 
 use egui::{Align2, Color32, Pos2, Rect, Sense, Stroke, Ui, pos2, vec2};
 
@@ -26,8 +28,9 @@ const HEADINGS: f32 = 20.0;
 const FULL_BAR: f32 = 56.0;
 /// Minimum share that a full bar represents, so that bars for negligible shares stay short.
 const LEAST_FULL: f32 = 0.1;
-/// Axis length on each side of the nominal value, in plausible standard deviations.
-const SHOWN_SD: f32 = GREATEST_VALUE as f32;
+/// Axis length on each side of the nominal value, in plausible standard deviations; the fit bounds
+/// the changes there.
+const AXIS_END: f32 = GREATEST_VALUE as f32;
 /// Radius of the dot at the value \[pt\].
 const DOT: f32 = 3.5;
 
@@ -91,14 +94,14 @@ impl SdAxis {
         let [middle, half] = columns.axis;
         Self {
             middle: row.left() + middle,
-            per_sd: half / SHOWN_SD,
+            per_sd: half / AXIS_END,
         }
     }
 
     /// Returns the horizontal screen position for a change of `z` plausible standard deviations,
     /// clamped to the axis.
     fn place(self, z: f32) -> f32 {
-        self.middle + self.per_sd * z.clamp(-SHOWN_SD, SHOWN_SD)
+        self.middle + self.per_sd * z.clamp(-AXIS_END, AXIS_END)
     }
 }
 
@@ -126,8 +129,9 @@ impl Ranking<'_> {
         ui.spacing_mut().item_spacing.y = 0.0;
         let columns = Columns::new(ui.available_width());
         self.headings_ui(ui, columns);
-        for (place, index) in self.findings.ranked().into_iter().enumerate() {
-            self.row_ui(ui, columns, place + 1, index, commands);
+        for (place, parameter) in self.findings.ranked().into_iter().enumerate() {
+            let rank = place + 1;
+            self.row_ui(ui, columns, rank, parameter, commands);
         }
         for parameter in &self.findings.off {
             self.off_row_ui(ui, columns, &parameter.name, commands);
@@ -142,29 +146,29 @@ impl Ranking<'_> {
         painted_text(ui, right, AT_RIGHT_END, "change", small(), color);
         painted_text(ui, row, columns.half_width, "±", small(), color);
         let [middle, _] = columns.axis;
-        let title = "±3 plausible sd";
+        let title = format!("±{AXIS_END} plausible sd");
         let at = pos2(row.left() + middle, row.center().y);
         ui.painter()
             .text(at, Align2::CENTER_CENTER, title, small(), color);
         painted_text(ui, row, columns.bar, "explained, %", small(), color);
     }
 
-    /// Draws the row of the parameter with this index; `place` is its rank, counted from 1.
+    /// Draws the row of the parameter with the index `parameter`; its rank counts from 1.
     fn row_ui(
         &self,
         ui: &mut Ui,
         columns: Columns,
-        place: usize,
-        index: usize,
+        rank: usize,
+        parameter: usize,
         commands: &mut Vec<Command>,
     ) {
         let diagnosed = DiagnosedParameter {
-            parameter: &self.findings.parameters[index],
-            diagnosis: &self.findings.diagnosis.parameters[index],
+            parameter: &self.findings.parameters[parameter],
+            diagnosis: &self.findings.diagnosis.parameters[parameter],
         };
         let name = &diagnosed.parameter.name;
         let look = RowLook {
-            is_selected: index == self.selected,
+            is_selected: parameter == self.selected,
             is_pointed: false,
             height: ROW,
         };
@@ -182,7 +186,7 @@ impl Ranking<'_> {
         } else {
             self.palette.dim_text
         };
-        let number = place.to_string();
+        let number = rank.to_string();
         painted_text(
             ui,
             row,
@@ -213,7 +217,7 @@ impl Ranking<'_> {
             self.palette.dim_text,
         );
         self.axis_ui(ui, row, columns, &diagnosed);
-        self.explained_ui(ui, row, columns, index);
+        self.explained_ui(ui, row, columns, parameter);
         let words = naming_words(diagnosed.diagnosis.why_not_named);
         let color = verdict_color(&diagnosed, self.palette);
         row_text_within(ui, row, columns.verdict, words, BODY_SIZE, color);
@@ -263,8 +267,8 @@ impl Ranking<'_> {
     fn full_share(&self) -> f32 {
         let mut full = LEAST_FULL;
         for parameter in &self.findings.diagnosis.parameters {
-            if let Some(ratio_alone) = parameter.ratio_alone {
-                full = full.max((1.0 - ratio_alone) as f32);
+            if let Some(remaining_share) = parameter.ratio_alone {
+                full = full.max((1.0 - remaining_share) as f32);
             }
         }
         full
@@ -274,12 +278,12 @@ impl Ranking<'_> {
     /// by its step in the stepwise list, in which each step adds the parameter that explains most
     /// of the rest (solid). Nothing for a parameter without a share: its value is set by hand, or
     /// there are too few conditions.
-    fn explained_ui(&self, ui: &Ui, row: Rect, columns: Columns, index: usize) {
-        let diagnosis = &self.findings.diagnosis.parameters[index];
-        let Some(ratio_alone) = diagnosis.ratio_alone else {
+    fn explained_ui(&self, ui: &Ui, row: Rect, columns: Columns, parameter: usize) {
+        let diagnosis = &self.findings.diagnosis.parameters[parameter];
+        let Some(remaining_share) = diagnosis.ratio_alone else {
             return;
         };
-        let alone = (1.0 - ratio_alone).clamp(0.0, 1.0) as f32;
+        let alone = (1.0 - remaining_share).clamp(0.0, 1.0) as f32;
         let by_step = diagnosis.gain.unwrap_or(0.0).clamp(0.0, 1.0) as f32;
         let left = row.left() + columns.bar;
         let full = self.full_share();

@@ -53,8 +53,8 @@ pub fn physics_header_ui(
         let text = format!("Use {}", counted(named, "parameter"));
         let button =
             Button::new(RichText::new(text).color(palette.on_accent())).fill(palette.accent);
-        let hint = "Changes the named parameters in the physics models of all conditions, before every \
-            other correction; can be undone in one step";
+        let hint = "Changes the named parameters in the physics models of all conditions, before \
+            every other correction; can be undone in one step";
         let command = setting_table::PHYSICS.to(PhysicsCorrection::Named);
         button_ui(ui, button, hint, command, commands);
     }

@@ -1,5 +1,6 @@
-//! Cautions about the identified models, each in two lines. A button beside them applies the first
-//! remedy (`caution_remedies`), if there is any; further remedies are in a menu.
+//! Cautions about the identified models, each in two lines. A *caution* is a finding that makes the
+//! models doubtful, a *remedy* a button that removes its cause or shows it (`caution_remedies`).
+//! The first remedy is beside the caution, further ones are in a menu.
 
 use std::sync::Arc;
 
@@ -25,16 +26,20 @@ use crate::gui::widgets::palette::{BODY_SIZE, SMALL_SIZE, body, medium, small};
 
 /// Heading height \[pt\].
 const HEADING: f32 = 20.0;
-/// Caution height \[pt\].
-const ENTRY: f32 = 36.0;
+/// Height of a caution's two lines \[pt\].
+const CAUTION: f32 = 36.0;
 /// Width reserved for the caution sign \[pt\].
 const SIGN: f32 = 20.0;
 /// Width of the button that opens the menu with further remedies \[pt\].
 const MENU: f32 = 20.0;
 const BUTTON_HEIGHT: f32 = 22.0;
+/// Space at the left and at the right of a button's text \[pt\].
+const BUTTON_PADDING: f32 = 8.0;
+/// Gap between the button and the menu \[pt\].
+const BUTTON_GAP: f32 = 2.0;
 
-/// Caution with its remedies.
-struct Entry {
+/// Caution as listed, with its remedies.
+struct ListedCaution {
     title: String,
     detail: String,
     /// Complete text, shown as a tooltip.
@@ -46,7 +51,7 @@ struct Entry {
 /// one after another.
 pub(super) fn caution_list_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let palette = page.palette;
-    let entries = entries(ui, page);
+    let cautions = listed_cautions(ui, page);
     let size = vec2(ui.available_width(), HEADING);
     let (heading, _) = ui.allocate_exact_size(size, Sense::hover());
     painted_text(
@@ -58,53 +63,57 @@ pub(super) fn caution_list_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Co
         palette.text,
     );
     let count = match page.records.identification() {
-        Some(_) if page.is_outdated() => format!("{}, outdated", entries.len()),
-        Some(_) => entries.len().to_string(),
+        Some(_) if page.is_outdated() => format!("{}, outdated", cautions.len()),
+        Some(_) => cautions.len().to_string(),
         None => "–".to_owned(),
     };
     painted_text(ui, heading, AT_RIGHT_END, &count, small(), palette.dim_text);
-    for (number, entry) in entries.iter().enumerate() {
-        entry_ui(ui, page, entry, number, commands);
+    for (number, caution) in cautions.iter().enumerate() {
+        caution_ui(ui, page, caution, number, commands);
     }
 }
 
 /// Collects the cautions about the latest identification.
-fn entries(ui: &Ui, page: Page<'_>) -> Vec<Entry> {
-    let Some(found) = page.records.identification() else {
+fn listed_cautions(ui: &Ui, page: Page<'_>) -> Vec<ListedCaution> {
+    let Some(identification) = page.records.identification() else {
         return Vec::new();
     };
     let channels = planned_channels(page.state.dataset());
-    let mut entries = Vec::new();
-    for caution in &found.cautions {
+    let mut listed = Vec::new();
+    for caution in &identification.cautions {
         let short = short_caution(caution);
-        entries.push(Entry {
+        listed.push(ListedCaution {
             title: short.title,
             detail: short.detail,
-            text: caution_with_advice(caution, &found.advice, &channels),
+            text: caution_with_advice(caution, &identification.advice, &channels),
             remedies: caution_remedies(ui, page.records, caution),
         });
     }
-    entries.extend(late_channel(ui, page));
-    entries
+    listed.extend(late_channel_caution(ui, page));
+    listed
 }
 
 /// Returns a caution about a channel that is delayed equally in all records, which only a
 /// comparison with a physics model can reveal.
-fn late_channel(ui: &Ui, page: Page<'_>) -> Option<Entry> {
+fn late_channel_caution(ui: &Ui, page: Page<'_>) -> Option<ListedCaution> {
     let Page { state, records, .. } = page;
-    let (job, outcome) = records.found.as_ref()?;
-    let found = outcome.as_ref().ok()?;
+    let latest = records.latest.as_ref()?;
+    let identification = latest.outcome.as_ref().ok()?;
     let condition = state.condition();
     let physics = condition
         .bundle(BundleKind::Physics)
         .get(condition.nominal())?;
-    let sources: [Source; 2] = [Arc::clone(found) as _, Arc::clone(condition) as _];
-    let late = cached(ui, "late channel", &sources, (), || {
-        ChannelTimeSkew::of_condition(&found.measured, job.request.options.band, condition)
+    let sources: [Source; 2] = [Arc::clone(identification) as _, Arc::clone(condition) as _];
+    let time_skew = cached(ui, "late channel", &sources, (), || {
+        ChannelTimeSkew::of_condition(
+            &identification.measured,
+            latest.job.request.options.band,
+            condition,
+        )
     });
-    let late = (*late)?;
+    let late = (*time_skew)?;
     let signal = late.signal(state.dataset())?;
-    Some(Entry {
+    Some(ListedCaution {
         title: format!("{} late by {:.0} ms", signal.name, s_to_ms(late.delay_s)),
         detail: format!("in all records, against {}", physics.name),
         text: time_skew_text(&late, &signal.name, &physics.name),
@@ -113,15 +122,15 @@ fn late_channel(ui: &Ui, page: Page<'_>) -> Option<Entry> {
 }
 
 /// Draws a caution in two lines, with its remedies at the right.
-fn entry_ui(
+fn caution_ui(
     ui: &mut Ui,
     page: Page<'_>,
-    entry: &Entry,
+    caution: &ListedCaution,
     number: usize,
     commands: &mut Vec<Command>,
 ) {
     let palette = page.palette;
-    let size = vec2(ui.available_width(), ENTRY);
+    let size = vec2(ui.available_width(), CAUTION);
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
     if number > 0 {
         ui.painter().hline(
@@ -130,39 +139,45 @@ fn entry_ui(
             egui::Stroke::new(1.0, palette.line),
         );
     }
-    let response = named(response, Role::Label, entry.text.clone());
-    hint_left_of(response, rect, &entry.text);
-    let mut buttons = 0.0;
-    if let Some(first) = entry.remedies.first() {
-        buttons = text_width(ui, &first.short, body()) + 18.0;
-        if entry.remedies.len() > 1 {
-            buttons += MENU + 2.0;
-        }
-    }
+    let response = named(response, Role::Label, caution.text.clone());
+    hint_left_of(response, rect, &caution.text);
+    let buttons_width = buttons_width(ui, &caution.remedies);
     let inner = rect.shrink2(vec2(0.0, 1.0));
     let upper = inner.with_max_y(inner.center().y);
     let lower = inner.with_min_y(inner.center().y);
     painted_text(ui, upper, 0.0, "⚠", body(), palette.warning);
-    let room = rect.width() - SIGN - buttons - 6.0;
-    let title = elided(ui, &entry.title, room, BODY_SIZE);
+    let room = rect.width() - SIGN - buttons_width - 6.0;
+    let title = elided(ui, &caution.title, room, BODY_SIZE);
     painted_text(ui, upper, SIGN, &title, body(), palette.text);
-    let detail = elided(ui, &entry.detail, room, SMALL_SIZE);
+    let detail = elided(ui, &caution.detail, room, SMALL_SIZE);
     painted_text(ui, lower, SIGN, &detail, small(), palette.dim_text);
-    if buttons > 0.0 {
+    if buttons_width > 0.0 {
         let place = Rect::from_min_max(
-            rect.right_center() - vec2(buttons, 0.5 * BUTTON_HEIGHT),
+            rect.right_center() - vec2(buttons_width, 0.5 * BUTTON_HEIGHT),
             rect.right_center() + vec2(0.0, 0.5 * BUTTON_HEIGHT),
         );
         ui.scope_builder(UiBuilder::new().max_rect(place).id_salt(number), |ui| {
             ui.horizontal(|ui| {
-                ui.spacing_mut().item_spacing.x = 2.0;
-                ui.spacing_mut().button_padding = vec2(8.0, 2.0);
-                remedies_ui(ui, &entry.remedies, commands);
+                ui.spacing_mut().item_spacing.x = BUTTON_GAP;
+                ui.spacing_mut().button_padding = vec2(BUTTON_PADDING, 2.0);
+                remedies_ui(ui, &caution.remedies, commands);
             });
         });
-        // The buttons end above the entry's lower edge.
+        // The buttons end above the caution's lower edge.
         ui.advance_cursor_after_rect(rect);
     }
+}
+
+/// Returns the width that the remedies' buttons need \[pt\]; 0 without any.
+fn buttons_width(ui: &Ui, remedies: &[Remedy]) -> f32 {
+    let Some((first, others)) = remedies.split_first() else {
+        return 0.0;
+    };
+    let mut width = text_width(ui, &first.short, body()) + (2.0 * BUTTON_PADDING + 2.0);
+    if !others.is_empty() {
+        width += BUTTON_GAP + MENU;
+    }
+    width
 }
 
 /// Draws the first remedy as a button, and the others in a menu beside it.

@@ -1,9 +1,9 @@
-//! Buttons that remove a caution's cause: [`caution_remedies`] for each kind of caution, and
-//! [`band_remedy`] for a failed identification. The first is the button beside the caution, the
-//! others are in a menu.
+//! Remedies for cautions and for failed identifications.
 //!
-//! A *caution* is a finding of the identification that makes its models doubtful; a *remedy* is
-//! such a button.
+//! A *caution* is a finding of the identification that makes its models doubtful. A *remedy* is a
+//! button that removes its cause, or shows the page on which the engineer can remove it.
+//! [`caution_remedies`] returns the remedies for each kind of caution, in display order,
+//! [`band_remedy`] that for a failed identification.
 
 use egui::Ui;
 
@@ -23,9 +23,9 @@ use crate::gui::commands::records::RecordsCommand;
 use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::state::records::{ConditionRecords, RecordsPage};
 
-/// Periods at the lowest frequency that the longest usable segment must contain: slightly more than
-/// five, so that rounding does not cause the same caution again.
-const PERIODS: f64 = 5.001;
+/// Number of periods at the lowest frequency that the longest usable segment must contain: slightly
+/// more than the five below which the caution appears, so that rounding does not cause it again.
+const LEAST_PERIODS: f64 = 5.001;
 /// Maximum count of buttons for references.
 const MOST_REFERENCES: usize = 3;
 
@@ -94,9 +94,12 @@ pub(super) fn caution_remedies(
         } => contradiction_remedies(records, contradicting),
         IdentificationCaution::Short {
             lowest, periods, ..
-        } => raise_lowest_frequency(records, lowest / periods)
-            .into_iter()
-            .collect(),
+        } => {
+            let omega_of_one_period = lowest / periods;
+            raise_lowest_frequency(records, omega_of_one_period)
+                .into_iter()
+                .collect()
+        }
         IdentificationCaution::BandNotShown { shown: band, .. }
         | IdentificationCaution::OrderLimit { narrower: band, .. } => vec![use_band(*band)],
         IdentificationCaution::NotSwept { .. } | IdentificationCaution::MovedTogether { .. } => {
@@ -144,6 +147,7 @@ fn record_caution_remedies(records: &ConditionRecords, caution: &RecordCaution) 
         | RecordCaution::Stuck { record, .. }
         | RecordCaution::Spike { record, .. } => leave_out(records, record).into_iter().collect(),
         RecordCaution::MovedTogether { .. } => vec![show_inputs()],
+        // Both concern the assignment of a column.
         RecordCaution::UnlikelyUnit { .. } | RecordCaution::Copy { .. } => vec![Remedy::new(
             "Check",
             "Set column and factor on page Columns…",
@@ -252,14 +256,14 @@ pub(super) fn remove_common_delay(
     delay_s: f64,
 ) -> Remedy {
     // The delay that remains adds to the one that the latest identification has removed.
-    let known_s = match &records.found {
-        Some((job, _)) => match job.request.options.preparation.channel(signal) {
+    let removed_s = match &records.latest {
+        Some(latest) => match latest.job.request.options.preparation.channel(signal) {
             Some(channel) => channel.delay_s,
             None => 0.0,
         },
         None => 0.0,
     };
-    let delay_s = known_s + delay_s;
+    let delay_s = removed_s + delay_s;
     Remedy::new(
         "Remove",
         format!("Remove {:.0} ms from {}", s_to_ms(delay_s), signal.name),
@@ -276,13 +280,13 @@ fn use_band(band: [f64; 2]) -> Remedy {
 }
 
 /// Returns a remedy that raises the lower band edge so that the longest usable segment contains
-/// [`PERIODS`] periods; at the frequency `once` \[rad/s\], this segment contains a single period.
-/// `None` if the raised edge would reach the upper one.
-fn raise_lowest_frequency(records: &ConditionRecords, once: f64) -> Option<Remedy> {
-    let (job, _) = records.found.as_ref()?;
-    let [_, highest] = job.request.options.band;
-    if PERIODS * once < highest {
-        let lowest = PERIODS * once;
+/// [`LEAST_PERIODS`] periods; at `omega_of_one_period` \[rad/s\], this segment contains a single
+/// period. `None` if the raised edge would reach the upper one.
+fn raise_lowest_frequency(records: &ConditionRecords, omega_of_one_period: f64) -> Option<Remedy> {
+    let latest = records.latest.as_ref()?;
+    let [_, highest] = latest.job.request.options.band;
+    let lowest = LEAST_PERIODS * omega_of_one_period;
+    if lowest < highest {
         Some(Remedy {
             short: format!("Start at {lowest:.2}"),
             ..use_band([lowest, highest])

@@ -3,11 +3,11 @@
 //! χ²/dof is the cost of the fit for each degree of freedom, 1 if the model leaves only noise
 //! (M14.4: docs/identification.md).
 
-use gdcm_model::dataset::ConditionId;
 use gdcm_model::number_format::decimals;
 use gdcm_words::Table;
 
-use crate::gui::state::condition_fit::FitStatus;
+use crate::gui::state::condition_fit::{FitCosts, FitStatus};
+use crate::gui::state::condition_records::EndedIdentification;
 use crate::gui::state::records::ConditionRecords;
 use crate::gui::state::window_state::State;
 
@@ -43,7 +43,7 @@ pub fn condition_table(state: &State) -> Table {
             status_word(fit.status).to_owned(),
         ];
         if let Some(records) = state.records.conditions.get(&id) {
-            cells.extend(outcome_cells(state, id, records));
+            cells.extend(outcome_cells(records));
         }
         table.row(cells);
     }
@@ -62,12 +62,16 @@ fn status_word(status: FitStatus) -> &'static str {
 }
 
 /// Returns the cells from the model order on; none without a successful identification.
-fn outcome_cells(state: &State, id: ConditionId, records: &ConditionRecords) -> Vec<String> {
-    let (Some((job, Ok(found))), Some(costs)) = (&records.found, state.condition_fit(id).costs)
+fn outcome_cells(records: &ConditionRecords) -> Vec<String> {
+    let Some(EndedIdentification {
+        job,
+        outcome: Ok(identification),
+    }) = &records.latest
     else {
         return Vec::new();
     };
-    let order = match found.refined.order() {
+    let costs = FitCosts::new(identification);
+    let order = match identification.refined.order() {
         Some(order) => order.to_string(),
         None => String::new(),
     };
@@ -75,8 +79,8 @@ fn outcome_cells(state: &State, id: ConditionId, records: &ConditionRecords) -> 
         order,
         decimals(costs.fitted, 2),
         decimals_or_empty(costs.held_out, 2),
-        (found.bundle.len() + 1).to_string(),
-        found.cautions.len().to_string(),
+        (identification.bundle.len() + 1).to_string(),
+        identification.cautions.len().to_string(),
         decimals_or_empty(job.news().duration_s, 1),
     ]
 }

@@ -2,8 +2,11 @@
 //!
 //! Unwrapped phases are known up to whole turns. Models' curves are shifted by whole turns, so that
 //! they are within half a turn of the measured phase at the *anchor*, the first trusted measured
-//! point; without an anchor they are not shifted. The *refined* model is the recommended one;
-//! *first* is the model from which its refinement starts. M14 is in docs/identification.md.
+//! point; without an anchor they are not shifted.
+//!
+//! The *refined* model is the result of the identification, the *first* model that from which its
+//! refinement starts. Standard deviations are drawn as 95 % intervals: as bars of measured points,
+//! and as a band about the refined curve. M14 is in docs/identification.md.
 
 use nalgebra::Complex;
 
@@ -32,9 +35,9 @@ pub(super) enum BodePart {
 }
 
 impl BodePart {
-    /// Returns the maximum half-length for bars and bands \[dB, deg\]. Longer ones are cut, because
-    /// they would hide other curves.
-    fn most_half(self) -> f64 {
+    /// Returns the maximum drawn half-width for bars and bands \[dB, deg\]. Wider ones are cut,
+    /// because they would hide other curves.
+    fn most_half_width(self) -> f64 {
         match self {
             Self::Magnitude => 20.0,
             Self::Phase => 180.0,
@@ -57,9 +60,9 @@ impl BodePart {
             }
     }
 
-    /// Returns the 95 % interval's half-width \[dB, deg\], limited to the maximum drawn length.
+    /// Returns the 95 % interval's half-width \[dB, deg\], limited to the maximum drawn width.
     pub(super) fn drawn_half_interval(self, sd: StandardDeviation) -> f64 {
-        self.half_interval(sd).min(self.most_half())
+        self.half_interval(sd).min(self.most_half_width())
     }
 }
 
@@ -95,36 +98,36 @@ pub(super) struct MeasuredPoint {
     pub(super) is_trusted: bool,
     /// Partial coherence, 0 to 1.
     pub(super) coherence: f64,
-    /// Measured phase minus the recommended model's phase, in standard deviations of the measured
+    /// Measured phase minus the refined model's phase, in standard deviations of the measured
     /// point; `None` without a model or a standard deviation.
     pub(super) phase_residual: Option<f64>,
 }
 
-/// Band and method for a measured response.
+/// Frequency band and method with which a response was measured.
 #[derive(Clone, Copy)]
-pub(super) struct MeasuredBand {
+pub(super) struct Measurement {
     /// Identification band \[rad/s\].
     pub(super) band: [f64; 2],
     /// Whether recorded references served as instrumental variables (M14.15).
-    pub(super) by_reference: bool,
+    pub(super) uses_references: bool,
 }
 
 /// Curves and intervals for a response, to be drawn in both halves of a Bode plot.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DrawnResponse {
     pub(super) measured: Vec<MeasuredPoint>,
-    /// Refined model's curve, over the band and slightly beyond.
+    /// Refined model's curve, over the frequency band and slightly beyond.
     pub(super) refined: Vec<CurvePoint>,
-    /// Refined model's curve, at the frequencies of its confidence band.
-    pub(super) recommended: Vec<CurvePoint>,
-    /// Standard deviation at each point of the recommended curve.
-    pub(super) recommended_sds: Vec<StandardDeviation>,
+    /// Refined model's curve at the frequencies at which its standard deviation is known.
+    pub(super) refined_with_sd: Vec<CurvePoint>,
+    /// Standard deviation at each point of `refined_with_sd`.
+    pub(super) refined_sds: Vec<StandardDeviation>,
     /// First model's curve, which is drawn while that model is refined.
-    pub(super) unrefined: Vec<CurvePoint>,
-    /// Intervals in which the recommended model deviates from the measured points \[rad/s\]
+    pub(super) first: Vec<CurvePoint>,
+    /// Frequency ranges in which the refined model deviates from the measured points \[rad/s\]
     /// (M14.17).
     pub(super) deviating: Vec<[f64; 2]>,
-    /// Intervals in which the reference did not excite the input \[rad/s\] (M14.15).
+    /// Frequency ranges in which the reference did not excite the input \[rad/s\] (M14.15).
     pub(super) unexcited: Vec<[f64; 2]>,
 }
 
@@ -132,7 +135,7 @@ impl DrawnResponse {
     /// Returns the curve of the first model, which is drawn while that model is refined.
     pub(super) fn first_model(model: &StateSpace, band: [f64; 2], pair: Pair) -> Self {
         Self {
-            unrefined: model_curve(model, band, pair, None),
+            first: model_curve(model, band, pair, None),
             ..Self::default()
         }
     }
@@ -140,45 +143,46 @@ impl DrawnResponse {
     /// Returns an identification's curves.
     ///
     /// 1. Measured points, and the anchor.
-    /// 2. Intervals in which the model deviates from the points and, with references, in which the
-    ///    input was not excited.
-    /// 3. Refined model on its own frequencies, and on those of its confidence band.
+    /// 2. Frequency ranges in which the model deviates from the points and, with references, in
+    ///    which the input was not excited.
+    /// 3. Refined model over the band, and at the frequencies of its standard deviations.
     /// 4. Phase residuals of the measured points, with the model at their frequencies.
-    pub(super) fn new(found: &Identification, measured_band: MeasuredBand, pair: Pair) -> Self {
+    pub(super) fn new(
+        identification: &Identification,
+        measurement: Measurement,
+        pair: Pair,
+    ) -> Self {
         // Step 1.
-        let points = &found.measured.points;
+        let points = &identification.measured.points;
         let measured = measured_points(points, pair);
-        let anchor = measured
-            .iter()
-            .find(|measured| measured.is_trusted)
-            .map(|measured| measured.point);
+        let anchor = first_trusted(&measured);
         // Step 2.
         let mut drawn = Self {
             measured,
-            deviating: deviating(found, pair),
+            deviating: deviating_ranges(identification, pair),
             ..Self::default()
         };
-        if measured_band.by_reference {
-            drawn.unexcited = unexcited(points, pair);
+        if measurement.uses_references {
+            drawn.unexcited = unexcited_ranges(points, pair);
         }
         // Step 3.
-        let mut band_omega: &[f64] = &[];
-        if let Some(bands) = &found.refined.bands {
-            band_omega = bands.omega();
+        let mut omega_of_sds: &[f64] = &[];
+        if let Some(bands) = &identification.refined.bands {
+            omega_of_sds = bands.omega();
             for (db, deg) in bands.sd_db()[pair].iter().zip(&bands.sd_deg()[pair]) {
                 drawn
-                    .recommended_sds
+                    .refined_sds
                     .push(StandardDeviation { db: *db, deg: *deg });
             }
         }
-        if let Some(model) = found.refined.state_space() {
-            drawn.refined = model_curve(model, measured_band.band, pair, anchor);
-            drawn.recommended = curve(model, band_omega, pair, anchor);
+        if let Some(model) = identification.refined.state_space() {
+            drawn.refined = model_curve(model, measurement.band, pair, anchor);
+            drawn.refined_with_sd = curve(model, omega_of_sds, pair, anchor);
             // Step 4.
             let omega: Vec<f64> = drawn
                 .measured
                 .iter()
-                .map(|point| point.point.omega)
+                .map(|measured| measured.point.omega)
                 .collect();
             let at_points = curve(model, &omega, pair, anchor);
             for measured in &mut drawn.measured {
@@ -192,12 +196,7 @@ impl DrawnResponse {
     /// branch of these curves: first that of the anchor, else that of the refined model's first
     /// point.
     pub(super) fn aligned(&self, curve: &BodeCurve) -> Vec<CurvePoint> {
-        let anchor = self
-            .measured
-            .iter()
-            .find(|measured| measured.is_trusted)
-            .map(|measured| measured.point)
-            .or_else(|| self.refined.first().copied());
+        let anchor = first_trusted(&self.measured).or(self.refined.first().copied());
         let mut omega = Vec::new();
         let mut phase_deg = Vec::new();
         let mut magnitude_db = Vec::new();
@@ -223,16 +222,22 @@ impl DrawnResponse {
         points
     }
 
-    /// Returns whether an error bar or a band exceeds its maximum drawn length.
-    pub(super) fn has_cut_intervals(&self) -> bool {
+    /// Returns whether an error bar or the band is cut, because it exceeds its maximum drawn width.
+    pub(super) fn has_cut_bars(&self) -> bool {
         let measured = self.measured.iter().map(|measured| measured.sd);
-        let mut sds = measured.chain(self.recommended_sds.iter().copied());
+        let mut sds = measured.chain(self.refined_sds.iter().copied());
         sds.any(|sd| {
             [BodePart::Magnitude, BodePart::Phase]
                 .iter()
                 .any(|part| part.drawn_half_interval(sd) < part.half_interval(sd))
         })
     }
+}
+
+/// Returns the first trusted measured point, which is the anchor.
+fn first_trusted(measured: &[MeasuredPoint]) -> Option<CurvePoint> {
+    let trusted = measured.iter().find(|measured| measured.is_trusted)?;
+    Some(trusted.point)
 }
 
 /// Returns a measured point's phase residual with respect to a model's curve at the measured
@@ -277,11 +282,11 @@ fn measured_points(points: &[EstimatePoint], pair: Pair) -> Vec<MeasuredPoint> {
     measured
 }
 
-/// Returns the intervals \[rad/s\] in which cautions report that the model deviates from the
-/// measured points.
-fn deviating(found: &Identification, pair: Pair) -> Vec<[f64; 2]> {
-    let mut intervals = Vec::new();
-    for caution in &found.cautions {
+/// Returns the frequency ranges \[rad/s\] in which cautions report that the model deviates from
+/// the measured points.
+fn deviating_ranges(identification: &Identification, pair: Pair) -> Vec<[f64; 2]> {
+    let mut ranges = Vec::new();
+    for caution in &identification.cautions {
         if let IdentificationCaution::LeavesPoints {
             output,
             input,
@@ -291,28 +296,28 @@ fn deviating(found: &Identification, pair: Pair) -> Vec<[f64; 2]> {
             && output.index == pair.output
             && input.index == pair.input
         {
-            intervals.push(*band);
+            ranges.push(*band);
         }
     }
-    intervals
+    ranges
 }
 
-/// Returns the intervals \[rad/s\] in which the coherence between input and reference is too low
-/// for a response.
-fn unexcited(points: &[EstimatePoint], pair: Pair) -> Vec<[f64; 2]> {
+/// Returns the frequency ranges \[rad/s\] in which the coherence between input and reference is too
+/// low for a response.
+fn unexcited_ranges(points: &[EstimatePoint], pair: Pair) -> Vec<[f64; 2]> {
     let at = (pair.output, pair.input);
-    let mut intervals: Vec<[f64; 2]> = Vec::new();
+    let mut ranges: Vec<[f64; 2]> = Vec::new();
     let mut was_low = false;
     for point in points {
         let is_low = point.partial_coherence[at] < TRUSTED_COHERENCE;
-        match intervals.last_mut() {
-            Some(interval) if is_low && was_low => interval[1] = point.omega,
-            _ if is_low => intervals.push([point.omega, point.omega]),
+        match ranges.last_mut() {
+            Some(range) if is_low && was_low => range[1] = point.omega,
+            _ if is_low => ranges.push([point.omega, point.omega]),
             _ => {}
         }
         was_low = is_low;
     }
-    intervals
+    ranges
 }
 
 /// Computes a model's response over the band and slightly beyond.

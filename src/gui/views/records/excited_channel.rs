@@ -38,5 +38,5 @@ pub(super) fn displayed_excited_input(ui: &Ui, page: Page<'_>) -> Option<usize> 
     });
     let focus = page.state.display.selection.pair.input;
     let excitation = excitations.get(displayed?)?;
-    excitation.input(focus)
+    excitation.excited_input(focus)
 }

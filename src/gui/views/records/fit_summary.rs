@@ -21,6 +21,7 @@ use super::record_list::{BAD_FIT, CHI_SQUARED};
 use super::value_range::value_text;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::records::RecordsCommand;
+use crate::gui::state::condition_records::EndedIdentification;
 use crate::gui::widgets::controls::{Asks, named};
 use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, body, medium, small};
@@ -61,13 +62,16 @@ fn lines_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
         progress_ui(ui, page, job);
         return;
     }
-    match &records.found {
+    match &records.latest {
         None => {
             let text = "No identification yet: choose Identify";
             let line = line_ui(ui, 2.0 * LINE);
             painted_text(ui, line, 0.0, text, body(), palette.dim_text);
         }
-        Some((job, Err(error))) => {
+        Some(EndedIdentification {
+            job,
+            outcome: Err(error),
+        }) => {
             let text = RichText::new(error.to_string()).color(palette.warning);
             ui.add(Label::new(text).wrap());
             if let Some(remedy) = band_remedy(error, job.request.options.band) {
@@ -75,8 +79,11 @@ fn lines_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
             }
             return;
         }
-        Some((job, Ok(found))) => {
-            let models = counted(1 + found.bundle.len(), "model");
+        Some(EndedIdentification {
+            job,
+            outcome: Ok(identification),
+        }) => {
+            let models = counted(1 + identification.bundle.len(), "model");
             let is_outdated = state.is_fit_outdated(condition);
             let words = if is_outdated {
                 "outdated".to_owned()
@@ -92,7 +99,7 @@ fn lines_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
                 palette.dim_text
             };
             painted_text(ui, heading, AT_RIGHT_END, &words, small(), color);
-            figures_ui(ui, found, palette);
+            figures_ui(ui, identification, palette);
         }
     }
     use_ui(ui, page, commands);
@@ -116,15 +123,18 @@ struct Figure<'a> {
 /// Shows costs, order and Laguerre pole in two lines. The held-out records' cost is that of the
 /// model as it is; its colour judges the cost of the model adapted within its uncertainty, if that
 /// is known.
-fn figures_ui(ui: &mut Ui, found: &Identification, palette: &Palette) {
-    let held_out = match (found.held_out_cost, found.held_out_normalised) {
+fn figures_ui(ui: &mut Ui, identification: &Identification, palette: &Palette) {
+    let held_out = match (
+        identification.held_out_cost,
+        identification.held_out_normalised,
+    ) {
         (Some(raw), Some(normalised)) => Figure {
             name: "held out",
             value: decimals(raw, 2),
             color: limit_color(normalised, NOT_PREDICTED, palette),
             hint: format!(
-                "{HELD_OUT_HINT}; {} for this model adapted within its uncertainty, where values up \
-                to {PREDICTED_WELL} are good",
+                "{HELD_OUT_HINT}; {} for this model adapted within its uncertainty, where values \
+                up to {PREDICTED_WELL} are good",
                 decimals(normalised, 2)
             ),
         },
@@ -140,7 +150,7 @@ fn figures_ui(ui: &mut Ui, found: &Identification, palette: &Palette) {
             },
         },
     };
-    let order = match found.refined.order() {
+    let order = match identification.refined.order() {
         Some(order) => order.to_string(),
         None => "–".to_owned(),
     };
@@ -148,8 +158,8 @@ fn figures_ui(ui: &mut Ui, found: &Identification, palette: &Palette) {
         [
             Figure {
                 name: "χ²/dof",
-                value: decimals(found.cost, 2),
-                color: limit_color(found.cost, BAD_FIT, palette),
+                value: decimals(identification.cost, 2),
+                color: limit_color(identification.cost, BAD_FIT, palette),
                 hint: CHI_SQUARED.to_owned(),
             },
             held_out,
@@ -159,11 +169,11 @@ fn figures_ui(ui: &mut Ui, found: &Identification, palette: &Palette) {
                 name: "order",
                 value: order,
                 color: palette.text,
-                hint: format!("CT-PBSID, refined; past window {}", found.past),
+                hint: format!("CT-PBSID, refined; past window {}", identification.past),
             },
             Figure {
                 name: "Laguerre, rad/s",
-                value: decimals(found.laguerre_pole, 1),
+                value: decimals(identification.laguerre_pole, 1),
                 color: palette.text,
                 hint: "Best of the Laguerre poles that were tried [rad/s]".to_owned(),
             },
@@ -278,11 +288,12 @@ fn progress_ui(ui: &mut Ui, page: Page<'_>, job: &IdentifyJob) {
     let news = job.news();
     let mut share = 0.0;
     let mut words = String::new();
+    // A waiting job has no step yet.
     if !news.step.is_empty() {
         let steps = state.results.background.identification.unwrap_or_default();
         share = steps.done as f32 / steps.total.max(1) as f32;
         words = format!("{}, {:.0} %", news.step, 100.0 * share);
-    } else if let Some(earlier) = state.records.under_way() {
+    } else if let Some(earlier) = state.records.running_job() {
         words = format!("Waiting for condition {}", earlier.condition);
     }
     ui.add(ProgressBar::new(share).desired_height(6.0));

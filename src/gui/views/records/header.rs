@@ -19,7 +19,8 @@ use crate::gui::widgets::palette::Palette;
 const BAR: f32 = 72.0;
 /// Width for the progress text \[pt\].
 const BAR_WORDS: f32 = 112.0;
-const IDENTIFY_HINT: &str = "Identifies models from the records: CT-PBSID, refined, with confidence bands (docs/identification.md)";
+const IDENTIFY_HINT: &str = "Identifies models from the records: CT-PBSID, refined, with \
+    confidence bands (docs/identification.md)";
 
 /// Draws the commands, from right to left: *Use n fits*, then *Identify* or the progress with
 /// *Stop*.
@@ -57,7 +58,8 @@ fn use_ui(ui: &mut Ui, fits: &[ConditionId], palette: &Palette, commands: &mut V
     let text = format!("Use {}", counted(fits.len(), "fit"));
     let names: Vec<String> = fits.iter().map(ToString::to_string).collect();
     let hint = format!(
-        "Replaces the identified models of condition {} by the refined models; can be undone in one step",
+        "Replaces the identified models of condition {} by the refined models; can be undone in \
+            one step",
         names.join(", ")
     );
     let text = RichText::new(text).color(palette.on_accent());
@@ -71,23 +73,18 @@ fn use_ui(ui: &mut Ui, fits: &[ConditionId], palette: &Palette, commands: &mut V
 fn identify_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let condition = state.condition().id();
     let in_use = state.records.conditions_in_use();
-    let open = state.conditions_to_identify();
-    if in_use.len() > 1 {
-        let mut entries: Vec<(String, Command)> = Vec::new();
-        if in_use.contains(&condition) {
-            let text = format!("Identify condition {condition} only");
-            entries.push((text, RecordsCommand::Identify.into()));
-        }
-        if !entries.is_empty() {
-            more_ui(ui, "More ways to identify", entries, commands);
-        }
+    let to_identify = state.conditions_to_identify();
+    if in_use.len() > 1 && in_use.contains(&condition) {
+        let text = format!("Identify condition {condition} only");
+        let entries = vec![(text, RecordsCommand::Identify.into())];
+        more_ui(ui, "More ways to identify", entries, commands);
     }
     let text = if in_use.len() < 2 {
         "Identify".to_owned()
-    } else if open.len() == in_use.len() {
+    } else if to_identify.len() == in_use.len() {
         format!("Identify all {}", in_use.len())
     } else {
-        format!("Identify {} of {}", open.len(), in_use.len())
+        format!("Identify {} of {}", to_identify.len(), in_use.len())
     };
     ui.add_enabled(!in_use.is_empty(), Button::new(text))
         .on_hover_text(IDENTIFY_HINT)
@@ -107,11 +104,11 @@ fn progress_ui(
         .on_hover_text("Stops identifying; finished fits are kept")
         .asks(RecordsCommand::StopIdentifying, commands);
     let mut words = format!("{} of {}", progress.finished, progress.requested);
-    if let Some(left_s) = progress.left_s {
-        words.push_str(&format!(", {left_s:.0} s left"));
+    if let Some(remaining_s) = progress.remaining_s {
+        words.push_str(&format!(", {remaining_s:.0} s left"));
     }
     let size = vec2(BAR_WORDS, ui.spacing().interact_size.y);
-    let step = match state.records.under_way() {
+    let step = match state.records.running_job() {
         Some(job) => format!("condition {}: {}", job.condition, job.news().step),
         None => "waiting".to_owned(),
     };

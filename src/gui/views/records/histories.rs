@@ -1,5 +1,8 @@
 //! Charts of the displayed record over time: the excited input, the output in focus and additional
 //! outputs, with the models' responses, on a common time axis and with a common cursor.
+//!
+//! The *bright* spans are the displayed part, the parts in use or the whole record; the samples
+//! outside them are drawn pale.
 
 use std::sync::Arc;
 
@@ -28,8 +31,8 @@ use crate::gui::plot::chart_view::chart_ui;
 use crate::gui::state::records::TimeRole;
 use crate::gui::widgets::palette::{Palette, small};
 
-/// Opacity of samples outside the spans in [`RecordSpan::bright_s`].
-const OUTSIDE: f32 = 0.4;
+/// Opacity of samples outside the bright spans ([`RecordSpan::bright_s`]).
+const PALE: f32 = 0.4;
 /// Share of the samples' range by which a model's response may extend the axis at either end; a
 /// diverging model is cut.
 const MOST_EXTENSION: f64 = 0.5;
@@ -44,13 +47,11 @@ pub(super) struct TimeView {
     pub(super) cursor_s: f64,
 }
 
-/// Draws the charts into their places; the first is the excited input, the second the output in
-/// focus. Returns `None` without a chart.
+/// Draws the charts into the areas `places`, from top to bottom: the excited input, the output in
+/// focus, and the additional outputs. Returns `None` without a chart.
 ///
-/// 1. The channels, in the order of the places, and the place of the spectrogram, if it is switched
-///    on.
-/// 2. A chart in each place that the spectrogram leaves: the samples in front of the models, those
-///    outside the spans in [`RecordSpan::bright_s`] pale.
+/// 1. The channels, one for each place, and the place of the spectrogram, if it is switched on.
+/// 2. A chart in each place that the spectrogram leaves: the samples in front of the models.
 /// 3. The spectrogram on the same time axis.
 /// 4. The common cursor with its values in every chart, and the unit at the lower left corner.
 pub(super) fn histories_ui(
@@ -128,21 +129,15 @@ impl<'a> TimeCharts<'a> {
     fn show(&self, ui: &mut Ui, places: &[Rect]) -> Option<TimeView> {
         // Step 1.
         let channels = self.channels(ui);
-        let with_spectrogram = self.page.state.records.spectrogram.is_some();
-        // The spectrogram replaces the two additional outputs or, if there are fewer, the input.
-        let spectrogram_place = match places {
-            [.., first, last] if places.len() > 3 && with_spectrogram => Some(first.union(*last)),
-            [first, ..] if with_spectrogram => Some(*first),
-            _ => None,
-        };
+        let spectrogram_place = self.spectrogram_place(places);
         // Step 2.
         let mut drawn = Vec::new();
         for (number, place) in places.iter().enumerate() {
-            let is_taken = match spectrogram_place {
-                Some(taken) => taken.contains(place.center()),
+            let is_of_spectrogram = match spectrogram_place {
+                Some(spectrogram) => spectrogram.contains(place.center()),
                 None => false,
             };
-            if is_taken {
+            if is_of_spectrogram {
                 continue;
             }
             let Some(channel) = channels.get(number) else {
@@ -151,7 +146,7 @@ impl<'a> TimeCharts<'a> {
             let is_lowest = number + 1 == places.len();
             drawn.push(self.chart_ui(ui, *place, *channel, is_lowest));
         }
-        let axis = drawn.last()?;
+        let lowest_chart = drawn.last()?;
         // Step 3.
         if let Some(place) = spectrogram_place {
             let has_ticks = places
@@ -160,7 +155,7 @@ impl<'a> TimeCharts<'a> {
             spectrogram_ui(ui, self.page, self.record, place, has_ticks);
         }
         // Step 4.
-        let transform = axis.transform;
+        let transform = lowest_chart.transform;
         let cursor_s = self.cursor_s(ui, places, &drawn);
         for chart in &drawn {
             self.cursor_ui(ui, chart, cursor_s);
@@ -175,6 +170,17 @@ impl<'a> TimeCharts<'a> {
             transform,
             cursor_s,
         })
+    }
+
+    /// Returns the place of the spectrogram; `None` if it is switched off. It replaces the two
+    /// additional outputs or, if there are fewer, the input.
+    fn spectrogram_place(&self, places: &[Rect]) -> Option<Rect> {
+        self.page.state.records.spectrogram?;
+        match places {
+            [_, _, .., first, last] => Some(first.union(*last)),
+            [first, ..] => Some(*first),
+            [] => None,
+        }
     }
 
     /// Returns the channels in the same order as `places`.
@@ -237,7 +243,7 @@ impl<'a> TimeCharts<'a> {
             }
         }
         if self.is_shown(TimeRole::Measured) {
-            let color = TimeRole::Measured.color(palette).gamma_multiply(OUTSIDE);
+            let color = TimeRole::Measured.color(palette).gamma_multiply(PALE);
             for points in &recorded.outside {
                 chart.lines.push(ChartLine {
                     points: Arc::clone(points),
@@ -275,7 +281,7 @@ impl<'a> TimeCharts<'a> {
         let Some(samples) = *samples else {
             return Range::new(-1.0, 1.0);
         };
-        let limit = Range::new(
+        let widest = Range::new(
             samples.min - MOST_EXTENSION * samples.width(),
             samples.max + MOST_EXTENSION * samples.width(),
         );
@@ -290,8 +296,8 @@ impl<'a> TimeCharts<'a> {
                     Range::spanning(points.map(|point| point[1]))
                 });
                 if let Some(response) = *response {
-                    range.min = range.min.min(response.min.max(limit.min));
-                    range.max = range.max.max(response.max.min(limit.max));
+                    range.min = range.min.min(response.min.max(widest.min));
+                    range.max = range.max.max(response.max.min(widest.max));
                 }
             }
         }
@@ -324,7 +330,7 @@ impl<'a> TimeCharts<'a> {
                 "largest sample",
                 &[Arc::clone(&chart.recorded) as _],
                 (),
-                || time_of_largest(&chart.recorded).unwrap_or(self.record.span_s[0]),
+                || time_of_largest_deviation(&chart.recorded).unwrap_or(self.record.span_s[0]),
             ),
             None => self.record.span_s[0],
         }
@@ -406,7 +412,7 @@ fn add_lines(chart: &mut Chart<'_>, lines: &[Arc<[[f64; 2]]>], role: TimeRole, p
 
 /// Returns the time \[s\] at which the samples inside the bright spans deviate most from their
 /// mean; `None` without such samples.
-fn time_of_largest(recorded: &RecordedLines) -> Option<f64> {
+fn time_of_largest_deviation(recorded: &RecordedLines) -> Option<f64> {
     let points: Vec<[f64; 2]> = recorded
         .inside
         .iter()

@@ -143,8 +143,8 @@ impl ChannelReadout<'_> {
                 ui.label(palette.small_warning(failure));
             }
         }
-        if let Some(found) = self.page.current_identification()
-            && let Some(cost) = found.output_costs.get(output)
+        if let Some(identification) = self.page.current_identification()
+            && let Some(cost) = identification.output_costs.get(output)
         {
             ui.label(palette.small(format!("χ²/dof of the output: {}", decimals(*cost, 2))));
         }

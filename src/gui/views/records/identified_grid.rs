@@ -24,38 +24,48 @@ const HEADING: f32 = 20.0;
 const INPUT_NAMES: f32 = 16.0;
 /// Width of the column with output names \[pt\].
 const OUTPUT_NAMES: f32 = 28.0;
-/// Maximum and minimum cell height \[pt\].
-const CELL: [f32; 2] = [27.0, 19.0];
+/// Minimum cell height \[pt\].
+const LEAST_CELL_HEIGHT: f32 = 19.0;
+/// Maximum cell height \[pt\].
+const MOST_CELL_HEIGHT: f32 = 27.0;
 /// Minimum cell width \[pt\].
-const LEAST_WIDTH: f32 = 58.0;
+const LEAST_CELL_WIDTH: f32 = 58.0;
+/// Count of rows that stay visible in a low column; the others scroll.
+const LEAST_VISIBLE_ROWS: f32 = 3.0;
+/// Gap between cells \[pt\].
 const GAP: f32 = 3.0;
 /// Notes that explain the cells; the first note that fits is shown.
 const NOTES: [&str; 2] = ["± 1 σ, dB and deg; bar: coherence", "± 1 σ, dB and deg"];
 /// Thickness of the coherence bar \[pt\].
 const BAR: f32 = 2.5;
 
-/// Values for an identified response: mid-band standard deviations (up to 3 dB the response counts
-/// as identified), and median partial coherence.
+/// Values for an identified response.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct PairFigures {
+    /// Standard deviation of the magnitude in the middle of the band \[dB\].
     sd_db: Option<f64>,
+    /// Standard deviation of the phase in the middle of the band \[deg\].
     sd_deg: Option<f64>,
+    /// Median of the partial coherence.
     coherence: Option<f64>,
+    /// Whether the standard deviation of the magnitude in mid-band is at most 3 dB.
     is_identified: bool,
 }
 
 impl PairFigures {
-    fn new(found: &Identification, pair: Pair) -> Self {
+    fn new(identification: &Identification, pair: Pair) -> Self {
         let mut figures = Self {
-            is_identified: !found.not_identified.contains(&(pair.output, pair.input)),
+            is_identified: !identification
+                .not_identified
+                .contains(&(pair.output, pair.input)),
             ..Self::default()
         };
-        if let Some(bands) = &found.refined.bands {
+        if let Some(bands) = &identification.refined.bands {
             let middle = bands.omega().len() / 2;
             figures.sd_db = bands.sd_db()[pair].get(middle).copied();
             figures.sd_deg = bands.sd_deg()[pair].get(middle).copied();
         }
-        let points = &found.measured.points;
+        let points = &identification.measured.points;
         figures.coherence = median_of(
             points
                 .iter()
@@ -74,13 +84,12 @@ fn median_of(values: impl Iterator<Item = f64>) -> Option<f64> {
     Some(median(&mut finite))
 }
 
-/// Draws the grid within a height of `room` \[pt\]; a click on a cell focuses its response. Cells
-/// share height and width between the limits of [`CELL`] and [`LEAST_WIDTH`]; what does not fit
-/// scrolls, with at least three rows visible.
+/// Draws the grid within `available_height` \[pt\]; a click on a cell focuses its response. Cells
+/// share height and width, within the limits of their size; a grid that does not fit scrolls.
 pub(super) fn identified_grid_ui(
     ui: &mut Ui,
     page: Page<'_>,
-    room: f32,
+    available_height: f32,
     commands: &mut Vec<Command>,
 ) {
     let palette = page.palette;
@@ -98,20 +107,19 @@ pub(super) fn identified_grid_ui(
     let dataset = page.state.dataset();
     let outputs = dataset.outputs().len();
     let rows = outputs.max(1) as f32;
-    let cells_height = room - HEADING - INPUT_NAMES;
-    let [greatest, least] = CELL;
-    let cell_height = (cells_height / rows - GAP).clamp(least, greatest);
-    let size = vec2(width, INPUT_NAMES + rows * (cell_height + GAP));
-    let limit = size
-        .y
-        .min((cells_height + INPUT_NAMES).max(INPUT_NAMES + 3.0 * (least + GAP)));
+    let cells_height = available_height - HEADING - INPUT_NAMES;
+    let cell_height = (cells_height / rows - GAP).clamp(LEAST_CELL_HEIGHT, MOST_CELL_HEIGHT);
+    let grid_height = INPUT_NAMES + rows * (cell_height + GAP);
+    let least_height = INPUT_NAMES + LEAST_VISIBLE_ROWS * (LEAST_CELL_HEIGHT + GAP);
+    let visible_height = grid_height.min((cells_height + INPUT_NAMES).max(least_height));
     let inputs = dataset.inputs().len().max(1) as f32;
-    let cell_width = ((width - OUTPUT_NAMES) / inputs - GAP).max(LEAST_WIDTH);
+    let cell_width = ((width - OUTPUT_NAMES) / inputs - GAP).max(LEAST_CELL_WIDTH);
     ScrollArea::both()
         .id_salt("identified responses")
-        .max_height(limit)
+        .max_height(visible_height)
         .show(ui, |ui| {
-            let size = vec2(OUTPUT_NAMES + inputs * (cell_width + GAP) - GAP, size.y);
+            let grid_width = OUTPUT_NAMES + inputs * (cell_width + GAP) - GAP;
+            let size = vec2(grid_width, grid_height);
             let (area, _) = ui.allocate_exact_size(size, Sense::hover());
             let grid = Grid {
                 page,
@@ -186,8 +194,8 @@ impl Grid<'_> {
         ui.painter()
             .rect(place, 4.0, fill, outline, StrokeKind::Inside);
         let mut hint = name;
-        if let Some(found) = records.identification() {
-            let figures = PairFigures::new(found, pair);
+        if let Some(identification) = records.identification() {
+            let figures = PairFigures::new(identification, pair);
             let is_outdated = self.page.is_outdated();
             self.paint_figures(ui, place, figures, is_outdated);
             hint = format!("{hint}: {}", figures.words());

@@ -15,7 +15,7 @@ use crate::gui::widgets::palette::Palette;
 /// mark poles that agree with a pole in the model whose order is lower by two.
 pub(super) fn stabilisation_chart<'a>(
     page: Page<'_>,
-    found: &Identification,
+    identification: &Identification,
     across: &'a str,
 ) -> Chart<'a> {
     let Page {
@@ -26,8 +26,8 @@ pub(super) fn stabilisation_chart<'a>(
     let unit = state.display.curves.unit;
     let axis = ChartAxis::Frequency(unit);
     let mut chart = Chart::new("Stabilisation diagram: |λ|", axis, across, "order");
-    if let Some((job, _)) = &records.found {
-        chart.band_ends = Some(job.request.options.band);
+    if let Some(latest) = &records.latest {
+        chart.band_ends = Some(latest.job.request.options.band);
     }
     for mark in records.marks("order-limit") {
         chart.notes.push((mark, palette.warning));
@@ -37,15 +37,19 @@ pub(super) fn stabilisation_chart<'a>(
     for is_stable in [false, true] {
         chart
             .marks
-            .push(stabilisation_marks(found, is_stable, palette));
+            .push(stabilisation_marks(identification, is_stable, palette));
     }
     chart
 }
 
 /// Returns the nonzero poles that agree with a pole in the lower-order model, or those that do not.
-fn stabilisation_marks(found: &Identification, is_stable: bool, palette: &Palette) -> ChartMarks {
+fn stabilisation_marks(
+    identification: &Identification,
+    is_stable: bool,
+    palette: &Palette,
+) -> ChartMarks {
     let mut points = Vec::new();
-    for point in &found.stabilisation {
+    for point in &identification.stabilisation {
         let modulus = point.pole.norm();
         if point.stable == is_stable && modulus > 0.0 {
             points.push([modulus, point.order as f64, 0.0]);
@@ -66,7 +70,7 @@ fn stabilisation_marks(found: &Identification, is_stable: bool, palette: &Palett
 
 /// Returns the chart with the poles in the s-plane; those that the records determine have error
 /// bars.
-pub(super) fn poles_chart<'a>(page: Page<'_>, found: &Identification) -> Chart<'a> {
+pub(super) fn poles_chart<'a>(page: Page<'_>, identification: &Identification) -> Chart<'a> {
     let Page {
         records, palette, ..
     } = page;
@@ -81,7 +85,7 @@ pub(super) fn poles_chart<'a>(page: Page<'_>, found: &Identification) -> Chart<'
     }
     let note = "grey: not determined".to_owned();
     chart.notes.push((note, palette.dim_text));
-    add_poles(&mut chart, &found.poles, palette);
+    add_poles(&mut chart, &identification.poles, palette);
     chart
 }
 

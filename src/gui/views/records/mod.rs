@@ -45,6 +45,8 @@ mod record_span;
 mod recorded_lines;
 mod references;
 mod response;
+mod response_cautions;
+mod response_marks;
 mod role_chips;
 mod search_settings;
 mod side_column;

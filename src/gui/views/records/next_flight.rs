@@ -16,13 +16,16 @@ pub(super) fn next_flight_ui(ui: &mut Ui, page: Page<'_>) {
         records,
         palette,
     } = page;
-    let Some((job, Ok(_))) = &records.found else {
+    let Some(latest) = &records.latest else {
         return;
     };
-    let Some(plan) = job.news().next_flight else {
+    if latest.outcome.is_err() {
+        return;
+    }
+    let Some(plan) = latest.job.news().next_flight else {
         ui.label(palette.small(
-            "Next flight: no prediction of the 95 % intervals, because the Fisher information of the \
-            records cannot be computed",
+            "Next flight: no prediction of the 95 % intervals, because the Fisher information of \
+            the records cannot be computed",
         ));
         return;
     };

@@ -130,21 +130,21 @@ fn excited_band(points: &[[f64; 2]]) -> Option<[f64; 2]> {
 /// the columns.
 fn quality_words(page: Page<'_>, row: &LaidOutRecord) -> String {
     let mut parts = Vec::new();
-    if let Some(found) = page.current_identification()
-        && let Some(found_use) = found
+    if let Some(identification) = page.current_identification()
+        && let Some(record_use) = identification
             .record_uses
             .iter()
-            .find(|found_use| found_use.record == row.table.name)
+            .find(|record_use| record_use.record == row.table.name)
     {
-        parts.push(match found_use.gaps.len() {
+        parts.push(match record_use.gaps.len() {
             0 => "no gap".to_owned(),
             1 => "1 gap".to_owned(),
             count => format!("{count} gaps"),
         });
-        if found_use.inputs_at_limit.is_empty() {
+        if record_use.inputs_at_limit.is_empty() {
             parts.push("no clipping of inputs".to_owned());
         }
-        for (signal, percent) in &found_use.inputs_at_limit {
+        for (signal, percent) in &record_use.inputs_at_limit {
             parts.push(format!("{} at its limit for {percent:.0} %", signal.name));
         }
     }
@@ -172,9 +172,9 @@ fn quality_words(page: Page<'_>, row: &LaidOutRecord) -> String {
 /// Returns χ²/dof over the other fitted records, for the model fitted to all records; `None` for a
 /// held-out record, without a current identification, or without other fitted records.
 fn cost_of_others(page: Page<'_>, row: &LaidOutRecord) -> Option<f64> {
-    let found = page.current_identification()?;
+    let identification = page.current_identification()?;
     let own = page.records.record_of_name(&row.table.name)?;
-    let is_fitted = found
+    let is_fitted = identification
         .record_fits
         .iter()
         .any(|fit| fit.record == own && !fit.held_out);
@@ -183,7 +183,7 @@ fn cost_of_others(page: Page<'_>, row: &LaidOutRecord) -> Option<f64> {
     }
     let mut cost = 0.0;
     let mut freedom = 0.0;
-    for fit in &found.record_fits {
+    for fit in &identification.record_fits {
         if fit.record != own && !fit.held_out {
             cost += fit.cost * fit.freedom as f64;
             freedom += fit.freedom as f64;

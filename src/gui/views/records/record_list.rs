@@ -21,27 +21,34 @@ use crate::gui::widgets::painted_text::{AT_RIGHT_END, painted_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, body, medium, small};
 
 /// Tooltip on fit costs.
-pub(super) const CHI_SQUARED: &str = "Cost per degree of freedom of the recommended model; 1 if only noise remains (docs/identification.md)";
+pub(super) const CHI_SQUARED: &str = "Cost per degree of freedom of the recommended model; 1 if \
+    only noise remains (docs/identification.md)";
 
 /// Left edge of record names \[pt\].
-const NAME: f32 = 20.0;
+const NAME_LEFT: f32 = 20.0;
 /// Indentation of parts below their record \[pt\].
 const INDENT: f32 = 18.0;
-// Right ends and centres of columns, as distances from a row's right edge [pt].
+/// Right end of the lengths, from the row's right edge \[pt\].
 const LENGTH_END: f32 = 88.0;
-const COST_END: f32 = 46.0;
-const CAUTION_CENTER: f32 = 36.0;
-const LOCK_CENTER: f32 = 20.0;
-const REMOVE_CENTER: f32 = 5.0;
-/// Width of the length column \[pt\].
+/// Width of the lengths \[pt\].
 const LENGTH_WIDTH: f32 = 26.0;
+/// Right end of the costs, from the row's right edge \[pt\].
+const COST_END: f32 = 46.0;
+/// Centre of the caution signs, from the row's right edge \[pt\].
+const CAUTION_CENTER: f32 = 36.0;
+/// Centre of the locks, from the row's right edge \[pt\].
+const LOCK_CENTER: f32 = 20.0;
+/// Centre of the buttons that remove parts, from the row's right edge \[pt\].
+const REMOVE_CENTER: f32 = 5.0;
+/// Minimum width to which a text is wrapped \[pt\].
+const LEAST_WRAPPED: f32 = 40.0;
 
 /// Shows a row for each record, its parts below it.
 pub(super) fn record_rows_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let names = whole_names(page);
     let prefix = common_prefix(&names);
-    heads_ui(ui, page, prefix);
-    // Controls must not be higher than the row.
+    headings_ui(ui, page, prefix);
+    // Check boxes must not be higher than a row.
     ui.spacing_mut().interact_size.y = 16.0;
     for (index, row) in page.records.rows.iter().enumerate() {
         let row = RecordRow {
@@ -69,16 +76,16 @@ fn whole_names(page: Page<'_>) -> Vec<&str> {
 /// consists of the prefix alone.
 fn common_prefix<'n>(names: &[&'n str]) -> &'n str {
     const SEPARATORS: [char; 6] = ['_', '-', ' ', '.', '/', ','];
-    let [first, rest @ ..] = names else {
+    let [first, others @ ..] = names else {
         return "";
     };
-    if rest.is_empty() {
+    if others.is_empty() {
         return "";
     }
     let mut end = 0;
-    for (at, letter) in first.char_indices() {
-        let next = at + letter.len_utf8();
-        let is_shared = rest.iter().all(|name| name.starts_with(&first[..next]));
+    for (start, letter) in first.char_indices() {
+        let next = start + letter.len_utf8();
+        let is_shared = others.iter().all(|name| name.starts_with(&first[..next]));
         if !is_shared {
             break;
         }
@@ -99,32 +106,41 @@ fn shown_name(row: &LaidOutRecord, prefix: &str) -> String {
     name.strip_prefix(prefix).unwrap_or(name).to_owned()
 }
 
-fn heads_ui(ui: &mut Ui, page: Page<'_>, prefix: &str) {
+/// Draws the headings: the names' common prefix, "s" above the lengths, and "χ²/dof" above the
+/// costs; once records or settings have changed, "outdated" instead.
+fn headings_ui(ui: &mut Ui, page: Page<'_>, prefix: &str) {
     let palette = page.palette;
-    let beginning = if prefix.is_empty() {
+    let prefix_text = if prefix.is_empty() {
         String::new()
     } else {
         format!("{prefix}…")
     };
-    let room = ui.available_width() - NAME - LENGTH_END - LENGTH_WIDTH;
-    let galley = wrapped(ui, &beginning, room, false, palette.dim_text);
+    let room = ui.available_width() - NAME_LEFT - LENGTH_END - LENGTH_WIDTH;
+    let galley = wrapped(ui, &prefix_text, room, false, palette.dim_text);
     let height = galley.size().y.max(18.0);
     let (row, _) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
     ui.painter().galley(
-        pos2(row.left() + NAME, row.center().y - 0.5 * galley.size().y),
+        pos2(
+            row.left() + NAME_LEFT,
+            row.center().y - 0.5 * galley.size().y,
+        ),
         galley,
         palette.dim_text,
     );
-    let upto = row.with_max_x(row.right() - LENGTH_END);
-    painted_text(ui, upto, AT_RIGHT_END, "s", small(), palette.dim_text);
-    let upto = row.with_max_x(row.right() - COST_END);
+    let lengths = row.with_max_x(row.right() - LENGTH_END);
+    painted_text(ui, lengths, AT_RIGHT_END, "s", small(), palette.dim_text);
+    let costs = row.with_max_x(row.right() - COST_END);
     let is_outdated = page.is_outdated();
-    let place = if is_outdated {
+    let heading_area = if is_outdated {
         painted_text(ui, row, AT_RIGHT_END, "outdated", small(), palette.warning)
     } else {
-        painted_text(ui, upto, AT_RIGHT_END, "χ²/dof", small(), palette.dim_text)
+        painted_text(ui, costs, AT_RIGHT_END, "χ²/dof", small(), palette.dim_text)
     };
-    let heading = ui.interact(place, ui.scope_id().with("cost heading"), Sense::hover());
+    let heading = ui.interact(
+        heading_area,
+        ui.scope_id().with("cost heading"),
+        Sense::hover(),
+    );
     heading.on_hover_text(if is_outdated {
         "χ²/dof of the latest fit; records or settings have changed since"
     } else {
@@ -148,7 +164,7 @@ impl RecordRow<'_> {
         } = self.page;
         let name = &self.row.table.name;
         let width = ui.available_width();
-        let left = NAME + self.indent();
+        let left = NAME_LEFT + self.indent();
         let is_selected = self.index == records.chosen;
         // Wrap a long name: if its end were cut off, its number could be mistaken for another
         // record's.
@@ -222,8 +238,8 @@ impl RecordRow<'_> {
             Some([first_s, last_s]) => format!("{:.0}", last_s - first_s),
             None => "–".to_owned(),
         };
-        let upto = rect.with_max_x(rect.right() - LENGTH_END);
-        painted_text(ui, upto, AT_RIGHT_END, &words, body(), palette.dim_text);
+        let lengths = rect.with_max_x(rect.right() - LENGTH_END);
+        painted_text(ui, lengths, AT_RIGHT_END, &words, body(), palette.dim_text);
     }
 
     /// Paints the record's χ²/dof: dim if outdated, in the warning colour if the fit is bad.
@@ -241,8 +257,15 @@ impl RecordRow<'_> {
         } else {
             palette.text
         };
-        let upto = rect.with_max_x(rect.right() - COST_END);
-        painted_text(ui, upto, AT_RIGHT_END, &format!("{cost:.2}"), body(), color);
+        let costs = rect.with_max_x(rect.right() - COST_END);
+        painted_text(
+            ui,
+            costs,
+            AT_RIGHT_END,
+            &format!("{cost:.2}"),
+            body(),
+            color,
+        );
     }
 
     /// Draws a sign if cautions about the identification or the columns concern the record.
@@ -334,23 +357,24 @@ fn paint_lock(ui: &Ui, row: Rect, color: egui::Color32) {
     let stroke = Stroke::new(1.2, color);
     ui.painter()
         .rect_stroke(body, 1.0, stroke, StrokeKind::Middle);
-    let bow = Rect::from_center_size(pos2(center.x, body.top() - 0.5), vec2(5.0, 7.0));
-    let corners = egui::CornerRadius {
+    let shackle = Rect::from_center_size(pos2(center.x, body.top() - 0.5), vec2(5.0, 7.0));
+    let rounded_top = egui::CornerRadius {
         nw: 3,
         ne: 3,
         sw: 0,
         se: 0,
     };
-    let visible = row.with_max_y(body.top());
+    // Only the upper part of the shackle shows above the body.
+    let above_body = row.with_max_y(body.top());
     ui.painter()
-        .with_clip_rect(visible.intersect(ui.clip_rect()))
-        .rect_stroke(bow, corners, stroke, StrokeKind::Middle);
+        .with_clip_rect(above_body.intersect(ui.clip_rect()))
+        .rect_stroke(shackle, rounded_top, stroke, StrokeKind::Middle);
 }
 
 /// Lays out a text within `room` \[pt\], wrapped between words or after punctuation.
 fn wrapped(ui: &Ui, text: &str, room: f32, is_strong: bool, color: egui::Color32) -> Arc<Galley> {
     let font = if is_strong { medium(BODY_SIZE) } else { body() };
-    ui.fonts_mut(|fonts| fonts.layout(text.to_owned(), font, color, room.max(40.0)))
+    ui.fonts_mut(|fonts| fonts.layout(text.to_owned(), font, color, room.max(LEAST_WRAPPED)))
 }
 
 #[cfg(test)]

@@ -1,56 +1,58 @@
 //! Charts of the response in focus: measured points, identified model with its confidence band,
 //! physics and corrected models; below, partial coherence and phase residual.
 //!
-//! A measured point is *trusted* if its partial coherence and its frequency resolution suffice
-//! (`drawn_response.rs`). The *phase residual* is the measured phase minus the identified model's,
-//! in standard deviations of the measured point.
+//! The *band* alone is the identification's frequency band, the *confidence band* the 95 % interval
+//! about the identified curve. A measured point is *trusted* if its partial coherence and its
+//! frequency resolution suffice (`drawn_response.rs`). The *phase residual* is the measured phase
+//! minus the identified model's, in standard deviations of the measured point.
+//!
+//! `response_marks` has the lines, bands and points of magnitude and phase, `response_cautions` the
+//! cautions about the response.
 
 use std::sync::Arc;
 
 use egui::{Align2, Color32, Id, Rect, Role as WidgetRole, Sense, Ui, pos2};
 
 use gdcm_plot::figure::Range;
-use gdcm_sysid::identification::{CautionNote, TRUSTED_COHERENCE};
+use gdcm_sysid::identification::TRUSTED_COHERENCE;
 
-use super::drawn_response::{BodePart, CurvePoint, DrawnResponse, MeasuredBand};
+use super::drawn_response::{BodePart, DrawnResponse, Measurement};
 use super::fit_layout::{CaptionedChart, ResponseLayout, TICKS};
 use super::frame_cache::cached;
 use super::page::Page;
+use super::response_cautions::{doubtful_ranges, short_cautions};
+use super::response_marks::{add_identified, line_points, measured_marks};
 use super::value_range::rounded_range;
 use crate::gui::plot::BodeCurve;
-use crate::gui::plot::chart::{
-    Chart, ChartArea, ChartAxis, ChartLayout, ChartLine, ChartMarks, ChartSpan, DENSE_DASH,
-};
+use crate::gui::plot::chart::{Chart, ChartAxis, ChartLayout, ChartLine, ChartMarks, ChartSpan};
 use crate::gui::plot::chart_view::chart_ui;
 use crate::gui::state::records::TimeRole;
 use crate::gui::widgets::controls::named;
 use crate::gui::widgets::elision::{elided, text_width};
 use crate::gui::widgets::painted_text::painted_text;
-use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium, small};
+use crate::gui::widgets::palette::{BODY_SIZE, SMALL_SIZE, medium, small};
 
 /// Substitute band \[rad/s\] if no identification has run.
 const UNKNOWN_BAND: [f64; 2] = [0.1, 10.0];
-/// Half-height of strips along the recommended model's magnitude curve \[dB\].
-const MARK_DB: f64 = 2.0;
-/// Half-height of strips along the recommended model's phase curve \[deg\].
-const MARK_DEG: f64 = 15.0;
 /// Value axis width \[pt\].
 const VALUE_AXIS: f32 = 40.0;
 /// Factors by which the visible frequencies extend beyond the band at its lower and upper end.
 const BEYOND: [f64; 2] = [1.4, 1.7];
-/// Upper limit of the coherence axis.
+/// Upper end of the coherence axis: slightly above 1, so that a line at 1 is not at the frame.
 const HIGHEST_COHERENCE: f64 = 1.08;
-/// Half-width of the shaded band in the phase-residual chart, in standard deviations.
-const RESIDUAL_BAND: f64 = 2.0;
-/// Minimum and maximum limit of the phase-residual axis, in standard deviations.
+/// Half-width of the shaded tolerance in the phase-residual chart, in standard deviations: 19
+/// of 20 residuals are inside if they are only noise.
+const RESIDUAL_TOLERANCE: f64 = 2.0;
+/// Smallest and largest end of the phase-residual axis, in standard deviations; the axis ends at
+/// the largest trusted residual between them.
 const RESIDUAL_LIMITS: [f64; 2] = [4.0, 10.0];
 /// Share of the curves' range within the band by which error bars may extend the axis.
 const MOST_EXTENSION: f64 = 0.3;
 
 /// Draws the response in focus; `curves` are those from `plain_curves`.
 ///
-/// 1. Heading: the name at the left, marks for cautions at the right, an explanation of bands and
-///    bars between them.
+/// 1. Heading: the name at the left, short cautions at the right, an explanation of confidence band
+///    and error bars between them.
 /// 2. Without a response, the reason instead of the charts.
 /// 3. Magnitude and phase: models (physics, corrected), identified curve with its 95 % band, strips
 ///    along it where it deviates from the measured points or was not excited, measured points with
@@ -65,7 +67,7 @@ pub(super) fn response_ui(
 ) {
     let Page { state, palette, .. } = page;
     let name = state.dataset().pair_name(state.display.selection.pair);
-    // Step 1, left; the marks and the explanation follow once there is a response.
+    // Step 1, left; the cautions and the explanation follow once there is a response.
     let title = format!("Response {name}");
     let shown = painted_text(ui, heading, 0.0, &title, medium(BODY_SIZE), palette.text);
     // Step 2.
@@ -74,10 +76,9 @@ pub(super) fn response_ui(
         return;
     };
     // Step 1, right and middle.
-    let marks = caution_marks(page);
     let mut right = heading.right();
-    for mark in marks.iter().rev() {
-        let text = format!("⚠ {mark}");
+    for caution in short_cautions(page).iter().rev() {
+        let text = format!("⚠ {caution}");
         right -= text_width(ui, &text, small());
         let x = right - heading.left();
         painted_text(ui, heading, x, &text, small(), palette.warning);
@@ -104,13 +105,13 @@ pub(super) fn response_ui(
     }
 }
 
-/// Returns a text that explains bands and bars.
+/// Returns a text that explains confidence band and error bars.
 fn heading_words(drawn: &DrawnResponse) -> String {
     if drawn.refined.is_empty() {
         return "first model, being refined".to_owned();
     }
     let mut words = "identified with 95 % band, measured ± 1.96 σ".to_owned();
-    if drawn.has_cut_intervals() {
+    if drawn.has_cut_bars() {
         words.push_str(", cut at ± 20 dB and ± 180°");
     }
     if !drawn.unexcited.is_empty() {
@@ -125,8 +126,10 @@ fn empty_ui(ui: &Ui, page: Page<'_>, layout: &ResponseLayout) {
     let text = if state.records.job_of(state.condition().id()).is_some() {
         "Identification in progress: the first model appears here"
     } else {
-        match &page.records.found {
-            Some((_, Err(_))) => "The identification failed: the reason is at the right",
+        match &page.records.latest {
+            Some(latest) if latest.outcome.is_err() => {
+                "The identification failed: the reason is at the right"
+            }
             _ => "No identification yet: choose Identify for the measured response and the models",
         }
     };
@@ -160,20 +163,20 @@ fn drawn_response(ui: &Ui, page: Page<'_>) -> Option<Arc<DrawnResponse>> {
             DrawnResponse::first_model(&model, band, pair)
         }));
     }
-    let found = records.identification()?;
-    let measured_band = match &records.found {
-        Some((job, _)) => MeasuredBand {
-            band: job.request.options.band,
-            by_reference: job.request.options.references > 0,
+    let identification = records.identification()?;
+    let measurement = match &records.latest {
+        Some(latest) => Measurement {
+            band: latest.job.request.options.band,
+            uses_references: latest.job.request.options.references > 0,
         },
-        None => MeasuredBand {
+        None => Measurement {
             band: UNKNOWN_BAND,
-            by_reference: false,
+            uses_references: false,
         },
     };
-    let source = Arc::clone(found) as _;
+    let source = Arc::clone(identification) as _;
     Some(cached(ui, "response", &[source], pair, || {
-        DrawnResponse::new(found, measured_band, pair)
+        DrawnResponse::new(identification, measurement, pair)
     }))
 }
 
@@ -184,8 +187,8 @@ fn job_band(page: Page<'_>) -> [f64; 2] {
     if let Some(job) = state.records.job_of(state.condition().id()) {
         return job.request.options.band;
     }
-    match &records.found {
-        Some((job, _)) => job.request.options.band,
+    match &records.latest {
+        Some(latest) => latest.job.request.options.band,
         None => UNKNOWN_BAND,
     }
 }
@@ -255,7 +258,7 @@ impl ResponseCharts<'_> {
             chart.notes = self.notes();
         }
         chart.lines.extend(models);
-        add_response(&mut chart, self.drawn, part, self.page);
+        add_identified(&mut chart, self.drawn, part, self.page);
         if self.is_shown(TimeRole::Measured) {
             for is_trusted in [false, true] {
                 chart
@@ -266,11 +269,11 @@ impl ResponseCharts<'_> {
         self.show(ui, place, caption, &chart);
     }
 
-    /// Returns the notes in the accessible name: marks for the cautions about the response.
+    /// Returns the notes in the accessible name: short cautions about the response.
     fn notes(&self) -> Vec<(String, Color32)> {
         let mut notes = Vec::new();
-        for mark in caution_marks(self.page) {
-            notes.push((format!("⚠ {mark}"), self.page.palette.warning));
+        for caution in short_cautions(self.page) {
+            notes.push((format!("⚠ {caution}"), self.page.palette.warning));
         }
         notes
     }
@@ -313,7 +316,7 @@ impl ResponseCharts<'_> {
                     .map(|point| point[1]),
             );
         }
-        for curve in [&self.drawn.refined, &self.drawn.unrefined] {
+        for curve in [&self.drawn.refined, &self.drawn.first] {
             for point in curve {
                 if is_inside(point.omega) {
                     values.push(point.place(part)[1]);
@@ -378,7 +381,7 @@ impl ResponseCharts<'_> {
         let half = largest.clamp(least, most);
         let mut chart = self.chart(&title, place, Range::new(-half, half));
         chart.tolerance = Some(ChartSpan {
-            ends: [-RESIDUAL_BAND, RESIDUAL_BAND],
+            ends: [-RESIDUAL_TOLERANCE, RESIDUAL_TOLERANCE],
             color: palette.text.gamma_multiply(0.08),
         });
         chart.marks.push(ChartMarks {
@@ -391,14 +394,14 @@ impl ResponseCharts<'_> {
         self.show(ui, place, ["Phase residual", "in σ, band ± 2"], &chart);
     }
 
-    /// Returns the frequency intervals that cautions call doubtful: short records, a narrowed band.
+    /// Returns the frequency ranges that cautions call doubtful: short records, a narrowed band.
     fn caution_spans(&self) -> Vec<ChartSpan> {
         let Page {
             records, palette, ..
         } = self.page;
         let mut spans = Vec::new();
         for (_, note) in records.cautions() {
-            for ends in doubtful_intervals(&note, self.band) {
+            for ends in doubtful_ranges(&note, self.band) {
                 if ends[0] < ends[1] {
                     spans.push(ChartSpan {
                         ends,
@@ -408,145 +411,5 @@ impl ResponseCharts<'_> {
             }
         }
         spans
-    }
-}
-
-/// Returns short marks for the cautions about the displayed response.
-///
-/// A caution with a pair concerns that response. A caution with a channel, unless it is about
-/// single records, concerns the responses to or of that channel. Of the others, only feedback and a
-/// narrowed band are marked; they concern all responses.
-fn caution_marks(page: Page<'_>) -> Vec<&'static str> {
-    let dataset = page.state.dataset();
-    let pair = page.state.display.selection.pair;
-    let output = &dataset.outputs()[pair.output].name;
-    let input = &dataset.inputs()[pair.input].name;
-    let mut marks = Vec::new();
-    for (_, note) in page.records.cautions() {
-        let is_concerned = match (&note.pair, &note.channel) {
-            (Some(names), _) => names[0] == *output && names[1] == *input,
-            (None, Some(channel)) => {
-                note.records.is_empty() && (channel == output || channel == input)
-            }
-            (None, None) => note.code.starts_with("feedback") || note.code == "band-narrowed",
-        };
-        if is_concerned {
-            marks.push(note.mark());
-        }
-    }
-    marks
-}
-
-/// Returns the intervals \[rad/s\] to which a caution refers: the lower end of the band if the
-/// records are short, or the parts of `band` outside the narrowed band; none for other cautions.
-fn doubtful_intervals(note: &CautionNote, band: [f64; 2]) -> Vec<[f64; 2]> {
-    match (note.code, note.band_rad_s) {
-        ("short", Some(ends)) => vec![ends],
-        ("band-narrowed", Some([low, high])) => vec![[band[0], low], [high, band[1]]],
-        _ => Vec::new(),
-    }
-}
-
-/// Adds the identified model's curve and bands to a chart, unless its role is hidden: the refined
-/// model, or dashed the first one while it is refined. The strips along the curve always remain.
-fn add_response(chart: &mut Chart<'_>, drawn: &DrawnResponse, part: BodePart, page: Page<'_>) {
-    let palette = page.palette;
-    if !page
-        .state
-        .records
-        .hidden_roles
-        .contains(&TimeRole::Identified)
-    {
-        chart.areas.push(confidence_band(drawn, part, palette));
-        let is_refined = !drawn.refined.is_empty();
-        let curve = if is_refined {
-            &drawn.refined
-        } else {
-            &drawn.unrefined
-        };
-        let style = TimeRole::Identified.style(palette);
-        chart.lines.push(ChartLine {
-            dash: if is_refined { None } else { Some(DENSE_DASH) },
-            ..ChartLine::styled(line_points(curve, part), style)
-        });
-    }
-    for interval in &drawn.deviating {
-        chart
-            .areas
-            .push(interval_mark(drawn, *interval, part, palette.warning));
-    }
-    for interval in &drawn.unexcited {
-        chart
-            .areas
-            .push(interval_mark(drawn, *interval, part, palette.dim_text));
-    }
-}
-
-/// Returns the 95 % band about the recommended curve.
-fn confidence_band(drawn: &DrawnResponse, part: BodePart, palette: &Palette) -> ChartArea {
-    let mut points = Vec::new();
-    for (point, sd) in drawn.recommended.iter().zip(&drawn.recommended_sds) {
-        let [omega, value] = point.place(part);
-        let half = part.drawn_half_interval(*sd);
-        points.push([omega, value - half, value + half]);
-    }
-    ChartArea {
-        points,
-        color: palette.identified.gamma_multiply(0.28),
-    }
-}
-
-fn line_points(curve: &[CurvePoint], part: BodePart) -> Arc<[[f64; 2]]> {
-    curve.iter().map(|point| point.place(part)).collect()
-}
-
-/// Returns a strip along the recommended curve within an interval \[rad/s\].
-fn interval_mark(
-    drawn: &DrawnResponse,
-    interval: [f64; 2],
-    part: BodePart,
-    color: Color32,
-) -> ChartArea {
-    let half = match part {
-        BodePart::Magnitude => MARK_DB,
-        BodePart::Phase => MARK_DEG,
-    };
-    let mut points = Vec::new();
-    for point in &drawn.recommended {
-        if (interval[0]..=interval[1]).contains(&point.omega) {
-            let [omega, value] = point.place(part);
-            points.push([omega, value - half, value + half]);
-        }
-    }
-    ChartArea {
-        points,
-        color: color.gamma_multiply(0.25),
-    }
-}
-
-/// Returns the trusted points (filled) or the other measured points, with their 95 % intervals.
-fn measured_marks(
-    drawn: &DrawnResponse,
-    part: BodePart,
-    is_trusted: bool,
-    palette: &Palette,
-) -> ChartMarks {
-    let mut points = Vec::new();
-    for measured in &drawn.measured {
-        if measured.is_trusted == is_trusted {
-            let [omega, value] = measured.point.place(part);
-            points.push([omega, value, part.drawn_half_interval(measured.sd)]);
-        }
-    }
-    ChartMarks {
-        points,
-        sideways: Vec::new(),
-        color: if is_trusted {
-            palette.text
-        } else {
-            palette.dim_text
-        },
-        filled: is_trusted,
-        crosses: false,
     }
 }

@@ -46,7 +46,7 @@ pub(super) fn small_plots_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Com
     let has_held_out = page
         .records
         .identification()
-        .is_some_and(|found| found.held_out_cost.is_some());
+        .is_some_and(|identification| identification.held_out_cost.is_some());
     let held_out_note = if has_held_out { "dashed: held out" } else { "" };
     let captions = [
         ["χ²/dof vs order", held_out_note],
@@ -61,13 +61,13 @@ pub(super) fn small_plots_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Com
             painted_text(ui, caption, AT_RIGHT_END, note, small(), palette.dim_text);
         }
     }
-    let Some(found) = page.records.identification() else {
+    let Some(identification) = page.records.identification() else {
         return;
     };
     let plots = halves.map(|half| half.with_min_y(half.top() + CAPTION));
     let [orders, poles] = plots;
     let mut chart = small_chart("χ²/dof vs order");
-    add_order_fits(&mut chart, found, palette);
+    add_order_fits(&mut chart, identification, palette);
     let hint = if has_held_out {
         "Opens page Order; dashed: held-out records"
     } else {
@@ -75,8 +75,8 @@ pub(super) fn small_plots_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Com
     };
     plot_ui(ui, page, orders, &chart, hint, commands);
     let mut chart = small_chart("poles, rad/s");
-    add_poles(&mut chart, &found.poles, palette);
-    if let Some([real, imaginary]) = pole_ranges(found) {
+    add_poles(&mut chart, &identification.poles, palette);
+    if let Some([real, imaginary]) = pole_ranges(identification) {
         chart.whole_across = Some(real);
         chart.values = Some(imaginary);
     }
@@ -98,8 +98,12 @@ fn small_chart(title: &str) -> Chart<'_> {
 
 /// Returns ranges of real and imaginary part that contain the determined poles and the origin's
 /// real part, symmetric about the real axis; `None` without determined poles.
-fn pole_ranges(found: &Identification) -> Option<[Range; 2]> {
-    let determined: Vec<_> = found.poles.iter().filter(|pole| pole.determined).collect();
+fn pole_ranges(identification: &Identification) -> Option<[Range; 2]> {
+    let determined: Vec<_> = identification
+        .poles
+        .iter()
+        .filter(|pole| pole.determined)
+        .collect();
     let real = Range::spanning(determined.iter().map(|pole| pole.pole.re))?.including(0.0);
     let imaginary = determined
         .iter()

@@ -23,7 +23,7 @@ const TARGET: &str = "TARG";
 
 /// Form for a dataset made from records, as typed.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct WantedDataset {
+pub struct DatasetForm {
     /// Inputs, in [`ChannelList`] syntax.
     pub inputs: String,
     /// Outputs, in the same syntax.
@@ -37,7 +37,7 @@ pub struct WantedDataset {
     pub problems: Vec<Message>,
 }
 
-impl WantedDataset {
+impl DatasetForm {
     /// Creates a proposal from records. It contains the channels that the file, or else the logging
     /// system's documentation, states to be inputs or outputs; others must be typed.
     pub fn proposed<'r>(

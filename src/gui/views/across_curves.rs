@@ -5,7 +5,7 @@
 //! on.
 
 use gdcm_plot::figure::responses::{AirspeedCurves, AirspeedResponse};
-use gdcm_study::jobs::curve_jobs::AcrossJob;
+use gdcm_study::jobs::across_job::AcrossJob;
 use gdcm_study::stages::condition_curves::display_band;
 
 use crate::gui::plot::CurveId;

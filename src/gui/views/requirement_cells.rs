@@ -5,7 +5,7 @@
 
 use egui::{Align2, Color32, Rect, Sense, Stroke, StrokeKind, Ui, Vec2, pos2, vec2};
 
-use gdcm_words::requirement_grid::NONE;
+use gdcm_words::requirement_grid::NOT_DETERMINED_SIGN;
 
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, body, medium};
 
@@ -78,7 +78,7 @@ fn outside_color(palette: &Palette) -> Color32 {
 pub(super) fn grid_legend_ui(ui: &mut Ui, palette: &Palette) {
     ui.spacing_mut().item_spacing.x = 6.0;
     if ui.available_width() > WIDE_LEGEND {
-        ui.label(palette.small(format!("{NONE} not determined")));
+        ui.label(palette.small(format!("{NOT_DETERMINED_SIGN} not determined")));
         ui.add_space(6.0);
     }
     ui.label(palette.small("background: corrected outside"));

@@ -101,7 +101,7 @@ impl SegmentLines {
         executor: &'a dyn Executor,
     ) -> Result<Measurement<'a>, IdentificationError> {
         let driven_lines = self.measured_range.spectra(driven, executor);
-        let instrument =
+        let through_reference =
             ReferenceResponse::new(&driven_lines, self.fitted_range, outputs, executor)?;
         let logged = self.measure_response(executor)?;
         Ok(Measurement {

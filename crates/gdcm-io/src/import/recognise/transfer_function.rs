@@ -286,7 +286,7 @@ fn polynomial(roots: &[Complex<f64>]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::formats::variables::{Array, Variable};
+    use crate::formats::variables::{Array, PageIndex, Variable};
     use crate::import::recognise::state_space::state_spaces;
 
     fn row(name: &str, values: &[f64]) -> Variable {
@@ -366,7 +366,7 @@ mod tests {
             value: Value::Array(Array::matrix(30_000, 1, long.clone())),
         };
         let variables = [row("A", &[-1.0]), row("B", &long), column];
-        let fault = state_spaces(&Record::from_variables(&variables), "", false)
+        let fault = state_spaces(&Record::from_variables(&variables), "", PageIndex::Last)
             .remove(0)
             .unwrap_err();
         let too_many = RecognitionFault::TooMany {

@@ -35,9 +35,11 @@ impl<'a> PaneLines<'a> {
         let frame = self.transform.frame().shrink(1.0);
         let mut shapes = Vec::new();
         for line in self.iter() {
-            palette
-                .curve_style(line.kind.line())
-                .add_shapes(screen_path(&line.level, self.transform), &mut shapes);
+            for path in screen_paths(&line.level, self.transform) {
+                palette
+                    .curve_style(line.kind.line())
+                    .add_shapes(path, &mut shapes);
+            }
         }
         ui.painter().with_clip_rect(frame).extend(shapes);
     }
@@ -64,8 +66,8 @@ impl<'a> PaneLines<'a> {
         let frame = *self.transform.frame();
         let mut labels = Vec::new();
         for line in self.iter() {
-            let path = screen_path(&line.level, self.transform);
-            let Some(end) = path.iter().rev().find(|at| frame.contains(**at)) else {
+            let paths = screen_paths(&line.level, self.transform);
+            let Some(end) = paths.iter().flatten().rev().find(|at| frame.contains(**at)) else {
                 continue;
             };
             let color = palette.curve_style(line.kind.line()).color.to_opaque();
@@ -94,16 +96,52 @@ fn visible_points(level: &Level, transform: &PlotTransform) -> Vec<[f64; 2]> {
     level.points(bounds.min()[0], bounds.max()[0])
 }
 
-/// Returns a line's path on the screen. Parts far outside the frame are skipped, because drawing
-/// their many dashes would take time.
-fn screen_path(level: &Level, transform: &PlotTransform) -> Vec<Pos2> {
+/// Returns a line's paths on the screen. Parts far outside the frame, whose many dashes would take
+/// time to draw, are skipped; the line is divided there.
+fn screen_paths(level: &Level, transform: &PlotTransform) -> Vec<Vec<Pos2>> {
+    near_paths(visible_points(level, transform), transform)
+}
+
+/// Returns the paths of the points that are not far outside the frame.
+fn near_paths(points: Vec<[f64; 2]>, transform: &PlotTransform) -> Vec<Vec<Pos2>> {
     let frame = transform.frame();
-    let mut path = Vec::new();
-    for point in visible_points(level, transform) {
+    let mut paths = vec![Vec::new()];
+    for point in points {
         let at = transform.position_from_point(&PlotPoint::from(point));
-        if (at.y - frame.center().y).abs() < 2.0 * frame.height() {
-            path.push(at);
+        let is_near_frame = (at.y - frame.center().y).abs() < 2.0 * frame.height();
+        let was_near_frame = paths.last().is_some_and(|path| !path.is_empty());
+        if is_near_frame {
+            if let Some(path) = paths.last_mut() {
+                path.push(at);
+            }
+        } else if was_near_frame {
+            paths.push(Vec::new());
         }
     }
-    path
+    paths.retain(|path| path.len() > 1);
+    paths
+}
+
+#[cfg(test)]
+mod tests {
+    use egui::{Rect, pos2};
+    use egui_plot::PlotBounds;
+
+    use super::*;
+
+    #[test]
+    fn a_line_is_divided_where_it_leaves_the_plot_far_behind() {
+        let frame = Rect::from_min_max(pos2(0.0, 0.0), pos2(100.0, 100.0));
+        let bounds = PlotBounds::from_min_max([0.0, -1.0], [3.0, 1.0]);
+        let transform = PlotTransform::new(frame, bounds, [false, false]);
+        // Inside, 50 plot heights above, inside again.
+        let values = [0.0, 0.0, 100.0, 100.0, 0.0, 0.0];
+        let points: Vec<[f64; 2]> = values
+            .iter()
+            .enumerate()
+            .map(|(index, value)| [0.5 * index as f64, *value])
+            .collect();
+        let paths = near_paths(points, &transform);
+        assert_eq!(paths.iter().map(Vec::len).collect::<Vec<_>>(), [2, 2]);
+    }
 }

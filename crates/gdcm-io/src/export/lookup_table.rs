@@ -326,12 +326,20 @@ impl<'e> BreakpointTable<'e> {
         worst.filter(|column| column.deviation.value >= NOTABLE_DEVIATION)
     }
 
-    /// Returns an airspeed \[kt\] near `airspeed_kt` that the table lacks: a multiple of 5 kt, else
-    /// a whole number, else a tenth of a knot; `None` if the table has all of them.
+    /// Returns the airspeed \[kt\] of an additional row that would reduce the deviation at
+    /// `airspeed_kt`: the nearest multiple of 5 kt, else whole number, else tenth of a knot between
+    /// the same rows and in the schedule's range; `None` if there is none.
     fn missing_airspeed_kt(&self, airspeed_kt: f64) -> Option<f64> {
+        let range = &self.scheduled.schedule.airspeeds;
+        let lower_rows = self
+            .airspeeds_kt
+            .partition_point(|&row_kt| row_kt < airspeed_kt);
+        let (lower, upper) = self.airspeeds_kt.split_at(lower_rows);
         for steps_per_knot in [0.2, 1.0, 10.0] {
             let rounded_kt = (airspeed_kt * steps_per_knot).round() / steps_per_knot;
-            if !self.airspeeds_kt.contains(&rounded_kt) {
+            let is_between_rows = lower.last().is_none_or(|&row_kt| rounded_kt > row_kt)
+                && upper.first().is_none_or(|&row_kt| rounded_kt < row_kt);
+            if is_between_rows && (range.min_kt..=range.max_kt).contains(&rounded_kt) {
                 return Some(rounded_kt);
             }
         }
@@ -504,6 +512,25 @@ mod tests {
                 "{points:?}"
             );
         }
+    }
+
+    #[test]
+    fn a_proposed_row_lies_between_the_rows_around_the_deviation() {
+        let analysis = analysis(None);
+        let source = source();
+        let mut table = table(&analysis, &source);
+        for (rows_kt, proposed_kt) in [
+            ([45.0, 61.0, 70.0, 120.0], Some(65.0)),
+            ([45.0, 61.0, 64.0, 120.0], Some(63.0)),
+            ([45.0, 62.5, 62.8, 120.0], Some(62.6)),
+            ([45.0, 62.61, 62.65, 120.0], None),
+        ] {
+            table.airspeeds_kt = rows_kt.to_vec();
+            assert_eq!(table.missing_airspeed_kt(62.63), proposed_kt, "{rows_kt:?}");
+        }
+        // The schedule ends at 140 kt, beyond the last row.
+        assert_eq!(table.missing_airspeed_kt(139.0), Some(140.0));
+        assert_eq!(table.missing_airspeed_kt(139.99), Some(140.0));
     }
 
     #[test]

@@ -38,17 +38,17 @@ impl RmsCost {
             }
         }
         let mut sum = 0.0;
-        let mut samples = 0;
+        // n_t n_o, if every window has all outputs.
+        let mut count = 0;
         for window in windows {
-            samples += window.measured.nrows();
             for &WeightedOutput { output, factor } in &counted {
                 if output < window.measured.ncols() {
                     let error = window.measured.column(output) - window.simulated.column(output);
                     sum += factor * factor * error.norm_squared();
+                    count += error.len();
                 }
             }
         }
-        let count = samples * counted.len();
         if count == 0 {
             return None;
         }
@@ -115,6 +115,13 @@ mod tests {
         assert_eq!(cost.left_out, [2]);
         assert_eq!(RmsCost::compute(&[], &outputs()), None);
         assert_eq!(RmsCost::compute(&windows, &outputs()[2..]), None);
+        let roll_only = ValidationWindow {
+            measured: DMatrix::from_column_slice(1, 1, &[2.0]),
+            simulated: DMatrix::zeros(1, 1),
+            ..windows[0].clone()
+        };
+        let cost_of_roll = RmsCost::compute(&[roll_only], &outputs()).unwrap();
+        assert_eq!(cost_of_roll.value, 2.0, "a missing output is not counted");
         let twice = [windows[0].clone(), windows[0].clone()];
         assert_eq!(
             RmsCost::compute(&twice, &outputs()).unwrap(),

@@ -17,6 +17,7 @@ use gdcm_method::couplings::coupling_shares::{
 };
 use gdcm_method::couplings::{LEAST_CONDITIONS, LoopMargin};
 use gdcm_model::dataset::{Channel, ConditionId, Dataset, Pair};
+use gdcm_model::units::physical_unit::{Dimension, PhysicalUnit};
 
 use super::analysis::Analysis;
 use super::correction_costs::CorrectionCost;
@@ -118,17 +119,14 @@ fn feedback_meaning(dataset: &Dataset, feedback: &FeedbackShare) -> FeedbackMean
     }
 }
 
-/// Returns whether the channel's unit is an angular rate.
+/// Returns whether the channel's unit is an angular rate of a body (not of a shaft, rpm).
 pub(super) fn is_rate(channel: &Channel) -> bool {
-    ["deg/s", "rad/s", "°/s"].contains(&channel.unit.trim())
+    PhysicalUnit::parse(&channel.unit).is_some_and(|unit| ["deg/s", "rad/s"].contains(&unit.name))
 }
 
 /// Returns whether the channel's unit is an acceleration.
 fn is_acceleration(channel: &Channel) -> bool {
-    matches!(
-        channel.unit.trim(),
-        "g" | "m/s^2" | "m/s²" | "m/s2" | "ft/s^2" | "ft/s²" | "ft/s2"
-    )
+    PhysicalUnit::parse(&channel.unit).is_some_and(|unit| unit.dimension == Dimension::Acceleration)
 }
 
 /// Compares J without and with couplings, for conditions left out of the fit or, if none was left
@@ -309,4 +307,23 @@ fn close_to_ringing(assessment: &CouplingsAssessment) -> Option<CouplingRemark> 
         return None;
     }
     Some(CouplingRemark::CloseToRinging { condition, margin })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rates_and_accelerations_are_recognised_in_every_spelling_of_their_units() {
+        for unit in ["deg/s", "deg/sec", "dps", "°/s", "rad/s"] {
+            assert!(is_rate(&Channel::new("Q", unit)), "{unit}");
+        }
+        for unit in ["g", "m/s^2", "m/s²", "ft/s2", "ft/sec^2"] {
+            assert!(is_acceleration(&Channel::new("NY", unit)), "{unit}");
+        }
+        for unit in ["rpm", "deg", "%", ""] {
+            let channel = Channel::new("X", unit);
+            assert!(!is_rate(&channel) && !is_acceleration(&channel), "{unit}");
+        }
+    }
 }

@@ -18,7 +18,6 @@ pub(super) fn clock_s(text: &str) -> Option<f64> {
     if parts.next().is_some() {
         return None;
     }
-    // Hour 24 occurs in 24:00, the end of a day.
     let hours = two_digits(hours, 24)?;
     let minutes = two_digits(minutes, 59)?;
     let seconds = match seconds {
@@ -34,6 +33,10 @@ pub(super) fn clock_s(text: &str) -> Option<f64> {
     };
     // Allow 60 s, which occurs during a leap second.
     if !(0.0..61.0).contains(&seconds) {
+        return None;
+    }
+    // Hour 24 occurs only in 24:00, the end of a day.
+    if hours == 24.0 && (minutes > 0.0 || seconds > 0.0) {
         return None;
     }
     Some(day_s + 3600.0 * hours + 60.0 * minutes + seconds)
@@ -72,12 +75,15 @@ mod clock_tests {
     fn times_with_a_date_and_without_are_seconds() {
         assert_eq!(clock_s("12:30:01.25"), Some(45_001.25));
         assert_eq!(clock_s("00:00:00,5"), Some(0.5));
+        assert_eq!(clock_s("24:00"), Some(86_400.0));
         // Reference value from `date -u -d "2026-03-01 12:30:01" +%s`.
         assert_eq!(clock_s("2026-03-01T12:30:01Z"), Some(1_772_368_201.0));
         assert_eq!(clock_s("2026/03/01 12:30:01"), Some(1_772_368_201.0));
         for wrong in [
             "12",
             "12:61:00",
+            "24:00:01",
+            "24:59:00",
             "a:b:c",
             "1:2:3:4",
             "12:30:nan",

@@ -45,7 +45,8 @@ fn find_channel(channels: &[ChannelRule], name: &str) -> Option<String> {
     Some(channel.name.clone())
 }
 
-/// A model with its channel names, from the file, or else from its variable or file name.
+/// A model with its channel names: those stated in the file or, without any, those in the variable
+/// name or file name.
 struct LabelledModel<'m> {
     found: &'m FoundModel,
     /// Inputs and outputs.

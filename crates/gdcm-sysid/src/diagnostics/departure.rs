@@ -71,8 +71,9 @@ struct PointDistance {
 }
 
 impl Departure {
-    /// Measures the distance between the response of a pair (output, input) and its points inside
-    /// `band` \[rad/s\]; `predicted` holds the model's responses at these points.
+    /// Compares a model with the measured response of a pair (output, input), at the points of
+    /// `estimate` inside `band` \[rad/s\]; `predicted` holds the model's response matrix at every
+    /// point of `estimate`.
     pub(crate) fn measure(
         predicted: &[DMatrix<Complex<f64>>],
         estimate: &ResponseEstimate,

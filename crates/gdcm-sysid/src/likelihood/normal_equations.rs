@@ -30,7 +30,7 @@ use super::nuisance_elimination::NuisanceSums;
 use super::schur_model::SchurModel;
 use super::spectral_lines::SpectralLines;
 
-/// Bin width in ln omega while descending.
+/// Bin width in ln omega during the descent to the minimum.
 pub(crate) const BIN_WIDTH: f64 = 0.04;
 /// Bin width in ln omega for which only lines with the same frequency share a bin: `G` is exact.
 pub(crate) const EXACT: f64 = 1e-9;

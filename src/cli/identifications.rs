@@ -20,7 +20,7 @@ use gdcm_model::number_format::counted;
 use gdcm_study::decisions::adopted_models::AdoptedModels;
 use gdcm_sysid::identification::{CautionNote, Identification};
 use gdcm_sysid::records::RecordChannels;
-use gdcm_words::record_use::input_limit_texts;
+use gdcm_words::input_limit_text::input_limit_texts;
 
 use super::condition_messages::{ConditionMessage, shared_messages};
 use super::failure::Failure;

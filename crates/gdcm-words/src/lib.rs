@@ -13,7 +13,7 @@
 //! that do not exist; [`coupling_error`], [`coupled_model_error`], [`coupling_remark`],
 //! [`couplings`], [`physics`], [`assessment`], [`schedule`], [`uncertainty`] for a study; [`edit`],
 //! [`decision_differences`] and [`dataset_differences`]; [`export`] for exported files;
-//! [`identification_caution`] for identified models, [`record_use`] for their records;
+//! [`identification_caution`] for identified models, [`input_limit_text`] for their records;
 //! [`flight_plan`] for further flights, [`suggested_runs`] for further runs of the physics model.
 //! Settings: [`setting_words`], [`gain_source`]. Tables: [`table`], [`requirements`],
 //! [`requirement_grid`], [`time_histories`]. Explained results: [`derivation`].
@@ -45,11 +45,11 @@ pub mod export;
 pub mod flight_plan;
 pub mod gain_source;
 pub mod identification_caution;
+pub mod input_limit_text;
 pub mod lead_price;
 pub mod leads;
 pub mod missing_results;
 pub mod physics;
-pub mod record_use;
 pub mod remark;
 pub mod requirement_grid;
 pub mod requirements;

@@ -26,13 +26,13 @@
 //! ```
 //!
 //! Step 5 costs half as much as step 4, because r is real. It is therefore used unless `u_k`
-//! exceeds `h_k` by more than the pivot threshold `tau = 2^18 / n` (`subdiagonal.rs`). The
+//! exceeds `h_k` by more than the pivot threshold `tau = 2^18 / n` (`pivot_threshold.rs`). The
 //! multipliers within G are then at most tau, and since G's rows enter unchanged, entries grow at
 //! most by the factor `n tau`.
 //!
 //! If the model has fewer outputs than inputs, its dual (A^T, C^T, B^T, D^T) takes its place, whose
 //! response is H^T. A negligible h_k is replaced by zero, which forces step 4 with an interchange
-//! in every frequency (see `subdiagonal.rs`).
+//! in every frequency (see `pivot_threshold.rs`).
 //!
 //! Each frequency occupies a lane of a vector register. Hessenberg form: Laub, IEEE Trans.
 //! Automatic Control 26(2), 1981; tau is the pivot threshold in Duff, Erisman & Reid, "Direct
@@ -44,7 +44,7 @@ use pulp::{Arch, Simd, WithSimd};
 use super::complex_lanes::ComplexLanes;
 use super::frequency_response::FrequencyResponse;
 use super::hessenberg_form::HessenbergForm;
-use super::subdiagonal::Subdiagonal;
+use super::pivot_threshold::Subdiagonal;
 use crate::dataset::{PairTable, StateSpace};
 
 /// Computes `H(j omega) = C (j omega I - A)^-1 B + D`: a p x m table of curves, with a value at

@@ -6,7 +6,7 @@ use pulp::Arch;
 
 use super::balancing::balance;
 use super::householder_reduction::HouseholderReduction;
-use super::subdiagonal::Subdiagonal;
+use super::pivot_threshold::Subdiagonal;
 use crate::dataset::{Pair, StateSpace};
 
 /// Minimum `alpha`, 2^-450 rad/s: a slower model's poles are effectively zero at any frequency in

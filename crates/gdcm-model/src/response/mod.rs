@@ -25,6 +25,7 @@ pub mod large_entry;
 pub mod lead_filter;
 pub mod mode;
 pub mod phase_unwrapping;
+mod pivot_threshold;
 pub mod polar_response;
 pub mod pole_estimate;
 pub mod prepared_model;
@@ -32,7 +33,6 @@ pub mod response_shape;
 mod s_plane;
 pub mod schur_form;
 mod single_response;
-mod subdiagonal;
 pub mod zeros;
 
 pub use elimination::evaluate;

@@ -15,7 +15,7 @@ use gdcm_study::jobs::job::Job;
 use gdcm_study::results::analysis::Analysis;
 use gdcm_study::stages::condition_curves::{CURVE_POINTS, display_band};
 
-use super::airspeed_response::{AirspeedCache, AirspeedCurves, AirspeedResponse};
+use super::airspeed_curves::{AirspeedCache, AirspeedCurves, AirspeedResponse};
 use super::axis::{Axis, Range};
 use super::bode::{ResponsePlot, band_strip};
 use super::bode_curve::Pane;

@@ -15,7 +15,7 @@
 //! | [`bode`], [`airspeeds`], [`error`], [`gains`], [`gains_on_screen`], [`schedule_cost`], [`assessment`], [`poles`], [`physics`], [`physics_change`], [`leads`], [`requirements`], [`bandwidth_detail`] | a figure for each view |
 //! | [`condition_source`], [`responses`] | curves for a condition, from models and corrections |
 //! | [`caption_words`] | words for captions |
-//! | `airspeed_response`, `uncertainty_band`, `reference_line`, `error_references` | curves over all conditions, bands and lines about them |
+//! | `airspeed_curves`, `uncertainty_band`, `reference_line`, `error_references` | curves over all conditions, bands and lines about them |
 //! | [`layout`], [`letters`], [`label_places`] | places for panels, letters and labels |
 //! | [`paint`], `paint_axes`, `paint_marks`, `paint_dots`, `dot_style`, `paint_words` | shapes at their places |
 //! | [`thinning`], [`tables`] | omission of invisible points; values of a figure |
@@ -39,7 +39,7 @@
 //! assert_eq!(figure.drawing(ColumnWidth::Single).size[0].round(), 238.0);
 //! ```
 
-mod airspeed_response;
+mod airspeed_curves;
 pub mod airspeeds;
 mod area;
 mod arrow;

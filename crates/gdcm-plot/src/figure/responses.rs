@@ -12,7 +12,7 @@ use gdcm_model::response::response_shape::{ResponseShape, wrapped_deg};
 use gdcm_model::units::signed;
 use gdcm_study::stages::condition_curves::{ConditionCurves, display_band};
 
-pub use super::airspeed_response::{AirspeedCache, AirspeedCurves, AirspeedResponse, line_of};
+pub use super::airspeed_curves::{AirspeedCache, AirspeedCurves, AirspeedResponse, line_of};
 pub use super::bode_curve::{BodeCurve, LogFrequencies, Pane};
 pub use super::reference_line::{Level, ReferenceKind, ReferenceLine};
 pub use super::uncertainty_band::{BodeBand, uncertainty_bands};

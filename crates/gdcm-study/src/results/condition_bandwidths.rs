@@ -28,8 +28,8 @@ use gdcm_method::requirements::sampled_response::SampledResponse;
 use gdcm_model::dataset::model::ModelBands;
 use gdcm_model::dataset::{Band, BundleKind, Dynamics, Pair};
 
+use super::bandwidth_correction::BandwidthCorrection;
 use super::model_swap::ModelSwap;
-use super::pair_correction::PairCorrection;
 use super::requested_condition::RequestedCondition;
 use super::required_bandwidth::{
     BandwidthFinding, METRICS, MetricValues, NoBandwidth, metric_values, metrics,
@@ -178,8 +178,8 @@ impl<'a> ConditionBandwidths<'a> {
         role: RequirementRole,
     ) -> Result<MeasuredBandwidth, NoBandwidth> {
         let correction = match self.requested.correction(role) {
-            None => PairCorrection::NONE,
-            Some(correction) => PairCorrection::from_correction(correction, pair)
+            None => BandwidthCorrection::NONE,
+            Some(correction) => BandwidthCorrection::from_correction(correction, pair)
                 .ok_or(NoBandwidth::NetGainNotPositive)?,
         };
         let model = match role {
@@ -207,7 +207,7 @@ impl<'a> ConditionBandwidths<'a> {
         &self,
         model: &EvaluatedModel<'_>,
         pair: Pair,
-        correction: PairCorrection,
+        correction: BandwidthCorrection,
         evaluation: Evaluation,
     ) -> Result<MeasuredBandwidth, AttitudeResponseError> {
         let study = &self.requested.analysis.study;
@@ -322,9 +322,9 @@ impl<'a> ConditionBandwidths<'a> {
         let correction = match role {
             RequirementRole::Corrected => {
                 let leads = self.requested.result.correction.leads.as_ref();
-                PairCorrection::from_scalars(swap.figures.as_deref()?, pair, leads)?
+                BandwidthCorrection::from_scalars(swap.figures.as_deref()?, pair, leads)?
             }
-            _ => PairCorrection::NONE,
+            _ => BandwidthCorrection::NONE,
         };
         let index = match swap.bundle {
             BundleKind::Physics => swap.model,

@@ -4,6 +4,7 @@
 pub mod analysis;
 pub mod applied_physics;
 pub mod assessment_table;
+mod bandwidth_correction;
 pub mod caution;
 pub mod channel_time_skew;
 pub mod comparison;
@@ -28,7 +29,6 @@ pub mod median_lags;
 pub mod missing_finding;
 pub mod model_swap;
 pub mod moved_models;
-mod pair_correction;
 pub mod physics_assessment;
 pub mod physics_findings;
 pub mod record_comparison;

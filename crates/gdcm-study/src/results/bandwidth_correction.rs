@@ -9,14 +9,14 @@ use gdcm_model::response::GainDelay;
 
 /// A correction's effect on a response.
 #[derive(Clone, Copy)]
-pub(super) struct PairCorrection {
+pub(super) struct BandwidthCorrection {
     pub(super) multiplier: GainDelay,
     /// Whether a lead filter is included; the corrected response then does not represent the
     /// aircraft above the band.
     pub(super) has_leads: bool,
 }
 
-impl PairCorrection {
+impl BandwidthCorrection {
     pub(super) const NONE: Self = Self {
         multiplier: GainDelay::NONE,
         has_leads: false,

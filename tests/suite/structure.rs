@@ -131,7 +131,7 @@ const CRATES: &[(&str, ModuleTable)] = &[
             ("physics", &["couplings", "table"]),
             ("suggested_runs", &[]),
             ("identification_caution", &[]),
-            ("record_use", &[]),
+            ("input_limit_text", &[]),
             ("assessment", &["caution"]),
             ("uncertainty", &["table"]),
             ("verdict", &["caution", "table"]),

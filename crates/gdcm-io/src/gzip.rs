@@ -27,6 +27,7 @@ pub(super) fn unpack(
 ) -> Result<Vec<u8>, FileError> {
     let mut text = Vec::new();
     let mut rest = bytes;
+    // Until only the zeros of the padding remain.
     while rest.iter().any(|&byte| byte != 0) {
         let mut member = GzDecoder::new(rest);
         while unpack_chunk(&mut member, &mut text, path, budget)? > 0 {}

@@ -1,4 +1,5 @@
-//! Commands that open, save and close files.
+//! Carries out commands about files (studies and datasets, requirement tables, recovery files), and
+//! quits.
 
 use std::path::PathBuf;
 
@@ -12,6 +13,10 @@ use super::postponed_actions::PendingAction;
 use crate::gui::commands::file::FileCommand;
 
 impl GdcmApp {
+    /// Carries out a file command.
+    ///
+    /// Closing and quitting ask here before unsaved decisions are lost. Opening asks by itself,
+    /// once the file is read; reloading keeps the decisions that still apply.
     pub(super) fn carry_out_file(&mut self, command: FileCommand) {
         match command {
             FileCommand::ReadRequirementTable(table, path) => {
@@ -41,7 +46,10 @@ impl GdcmApp {
             }
             FileCommand::Quit => self.quit(),
             FileCommand::SaveStudy => self.save(),
-            FileCommand::SaveStudyAs(path) => self.save_as(path, self.postponed.existing),
+            FileCommand::SaveStudyAs(path) => {
+                // `Replace` only if the engineer has confirmed that the file may be overwritten.
+                self.save_as(path, self.postponed.existing)
+            }
         }
     }
 

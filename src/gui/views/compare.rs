@@ -31,8 +31,8 @@ pub fn compare_view_ui(
     keep_ui(ui, state, commands);
     if state.study.variants.is_empty() {
         let words = "A variant is a named set of decisions. Keep the current decisions as a \
-            variant and continue: the differences, \
-                     and their effect on J and on the net gains, are then listed here.";
+            variant and continue: the differences, and their effect on J and on the net gains, \
+            are then listed here.";
         ui.label(RichText::new(words).color(palette.dim_text));
         return;
     }

@@ -17,8 +17,8 @@ use crate::gui::widgets::number_entry::number_entry_ui;
 use crate::gui::widgets::palette::Palette;
 use crate::message::Message;
 
-/// Draws the fields for shape, size and duration; above them, the record being read, or that the
-/// condition has no record in use.
+/// Draws the fields for shape, size and duration; above them, why the details can show no record:
+/// one is being read, or the condition has none in use.
 pub(super) fn test_input_ui(
     ui: &mut Ui,
     state: &State,

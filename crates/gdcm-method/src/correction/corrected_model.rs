@@ -12,7 +12,7 @@ use super::channel_correction::ChannelCorrection;
 use super::channel_model::ChannelModel;
 use super::channels::{Channel, Channels};
 use super::pade::Pade;
-use super::series_connection::Blocks;
+use super::series_connection::Matrices;
 
 /// How far a delay may be from a whole number of samples, in samples: computed delays have rounding
 /// errors.
@@ -148,7 +148,7 @@ impl CorrectedModel {
             return Err(CorrectedModelError::TooManyStates { states });
         }
         // Steps 2 and 3
-        let mut whole = Blocks::with_gains(model, correction).between(&delays);
+        let mut whole = Matrices::with_gains(model, correction).between(&delays);
         if correction.leads.is_some() {
             whole = whole.between(&lead_models);
         }

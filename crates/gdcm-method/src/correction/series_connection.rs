@@ -16,38 +16,38 @@ use super::channel_model::ChannelModel;
 use super::channels::Channels;
 
 /// The matrices A, B, C and D, in continuous or discrete time.
-pub(super) struct Blocks {
+pub(super) struct Matrices {
     pub(super) a: DMatrix<f64>,
     pub(super) b: DMatrix<f64>,
     pub(super) c: DMatrix<f64>,
     pub(super) d: DMatrix<f64>,
 }
 
-impl Blocks {
+impl Matrices {
     /// Returns the model's matrices with the channel gains, without delays.
     pub(super) fn with_gains(model: &StateSpace, correction: &ChannelCorrection) -> Self {
-        let mut blocks = Self {
+        let mut matrices = Self {
             a: model.a().clone(),
             b: model.b().clone(),
             c: model.c().clone(),
             d: model.d().clone(),
         };
         for (input, &gain) in correction.input_gains.iter().enumerate() {
-            blocks.b.column_mut(input).scale_mut(gain);
-            blocks.d.column_mut(input).scale_mut(gain);
+            matrices.b.column_mut(input).scale_mut(gain);
+            matrices.d.column_mut(input).scale_mut(gain);
         }
         for (output, &gain) in correction.output_gains.iter().enumerate() {
-            blocks.c.row_mut(output).scale_mut(gain);
-            blocks.d.row_mut(output).scale_mut(gain);
+            matrices.c.row_mut(output).scale_mut(gain);
+            matrices.d.row_mut(output).scale_mut(gain);
         }
-        blocks
+        matrices
     }
 
     /// Combines parallel channels into a block-diagonal system.
     fn block_diagonal(channels: &[ChannelModel]) -> Self {
         let states = channels.iter().map(ChannelModel::order).sum();
         let count = channels.len();
-        let mut blocks = Self {
+        let mut matrices = Self {
             a: DMatrix::zeros(states, states),
             b: DMatrix::zeros(states, count),
             c: DMatrix::zeros(count, states),
@@ -56,22 +56,22 @@ impl Blocks {
         let mut first = 0;
         for (channel, model) in channels.iter().enumerate() {
             let order = model.order();
-            blocks
+            matrices
                 .a
                 .view_mut((first, first), (order, order))
                 .copy_from(&model.a);
-            blocks
+            matrices
                 .b
                 .view_mut((first, channel), (order, 1))
                 .copy_from(&model.b);
-            blocks
+            matrices
                 .c
                 .view_mut((channel, first), (1, order))
                 .copy_from(&model.c);
-            blocks.d[(channel, channel)] = model.d;
+            matrices.d[(channel, channel)] = model.d;
             first += order;
         }
-        blocks
+        matrices
     }
 
     /// Connects the input channels before this system, and the output channels after it.

@@ -8,7 +8,8 @@
 //!
 //! | symbol | meaning |
 //! |---|---|
-//! | `R'`, `H_c` | flight response; physics response with the couplings of the previous pass |
+//! | `R'` | flight response without its channels' delays and leads |
+//! | `H`, `H_c` | physics response; the same with the couplings of the previous pass |
 //! | `w_p` | 2 for an on-axis response, otherwise 1 |
 //! | `sd` | standard deviation of the identified model's `ln H` |
 //! | `w_gamma^2` | weight from the coherence (M4a) |
@@ -18,6 +19,11 @@
 //! same in all passes; `|H_c|` and `e` change. The division by `max(|R'|, |H_c| / 2)` makes errors
 //! relative; its second value keeps a zero of `R'` from dominating. The last factor of `q` is small
 //! where the error is large, so that outliers do not dominate.
+//!
+//! The feedback `K` returns the *fed-back* outputs to the inputs. A residual therefore depends on
+//! further responses: in flight, of the fed-back outputs to the same input; in the physics model,
+//! of its own output and the fed-back outputs to all inputs. If one of them is missing, the
+//! residual has no weight.
 
 use nalgebra::Complex;
 
@@ -62,12 +68,14 @@ pub(super) struct WeightedCondition<'a> {
 }
 
 impl<'a> WeightedCondition<'a> {
-    /// Arranges a condition; `fed_back` are the outputs with a column in `K`.
+    /// Arranges a condition; `fed_back` are the fed-back outputs.
     ///
-    /// A missing value is replaced by 0, and its response has weight 0; so have all responses in an
-    /// output for which the physics model lacks a response. If flight lacks a response that is fed
-    /// back, its input column has weight 0; if the physics model lacks such a response, the whole
-    /// frequency has weight 0. The value 0 is then never used.
+    /// A missing value is replaced by 0. At each frequency, these have weight 0, so that the value
+    /// is never used:
+    ///
+    /// - a response that flight lacks; if its output is fed back, its whole input column;
+    /// - all responses in an output for which the physics model lacks a response; if the output is
+    ///   fed back, the whole frequency.
     pub(super) fn new(
         problem: &'a CouplingProblem,
         condition: &CouplingCondition,
@@ -195,6 +203,7 @@ fn fixed_weights(
         .map(|table| table.map(|_, coherence| coherence.on_grid(&coherence.weights, points)));
     let mut weights = Vec::with_capacity(points * inputs * outputs);
     for k in 0..points {
+        // By output: whether the physics model has its responses to all inputs.
         let has_row: Vec<bool> = (0..outputs)
             .map(|output| condition.has_physics_row(output, k))
             .collect();

@@ -5,7 +5,17 @@
 //! The unknowns are the parameter values `z`, in plausible standard deviations, the channel delays
 //! `tau`, and each condition's channel ln gains `a`, `b`. `R` is the identified response, `H^` the
 //! physics response at the point with the channels' gains and delays, `q` a response's weight, and
-//! `s` the misfit, `s^2 = sum q^2 |ln(R / H^)|^2 / (2 sum q^2)`.
+//! `s` the misfit; `q` and `s` are renewed in each pass. The objective is
+//!
+//! ```text
+//! nu/(N s^2) sum q^2 |ln(R / H^)|^2
+//!     + sum z^2 + sum (tau / delay_sd)^2 + sum (a / gain_sd)^2 + sum (b / gain_sd)^2,
+//! s^2 = max(sum q^2 |ln(R / H^)|^2 / (2 sum q^2), 0.01^2)
+//! ```
+//!
+//! `N` is the number of frequencies in the grid. `PhysicsOptions` contains `nu`, how many
+//! independent frequencies a response counts as, and the prior standard deviations `delay_sd` and
+//! `gain_sd`.
 
 use gdcm_model::executor::{Executor, each};
 use gdcm_model::progress::{Progress, Shares};

@@ -1,11 +1,11 @@
 //! A mode's eigenvectors, with the state participation and the residues that follow from them.
 //!
-//! With `A = Q T Q^H`, T upper triangular with the eigenvalues `lambda_k` on its diagonal
-//! (`schur_form.rs`), for eigenvalue k:
+//! With `A = Q T Q^H`, A balanced, T upper triangular with the eigenvalues `lambda_k` on its
+//! diagonal (`schur_form.rs`), for eigenvalue k:
 //!
 //! ```text
-//! 1  x_k = 1, x_j = -(sum_(j < i <= k) t_ji x_i) / (t_jj - lambda_k), j = k - 1 ... 1;    v = Q x
-//! 2  y_k = 1, y_j = -(sum_(k <= i < j) y_i t_ij) / (t_jj - lambda_k), j = k + 1 ... n;    w = y Q^H
+//! 1  x_k = 1, x_j = -(sum_(j < i <= k) t_ji x_i) / (t_jj - lambda_k), j = k - 1 ... 1;   v = Q x
+//! 2  y_k = 1, y_j = -(sum_(k <= i < j) y_i t_ij) / (t_jj - lambda_k), j = k + 1 ... n;   w = y Q^H
 //! 3  w v = 1: the pole moves by |w| |v| per unit change in A; beyond a limit it is near defective
 //! 4  participation of state i: |w_i v_i| / sum_j |w_j v_j|, independent of the state units
 //! 5  residue of output i over the inputs together: (C v)_i |w B|
@@ -39,8 +39,10 @@ impl Eigenvectors {
     /// # Errors
     /// [`NearDefective`] if they are dominated by rounding errors.
     pub(super) fn new(form: &SchurForm, index: usize) -> Result<Self, NearDefective> {
+        // Steps 1 and 2.
         let x = form.right(index);
         let y = form.left(index);
+        // Step 3: `y x = 1`, because only entry k is nonzero in both.
         let movement = x.norm() * y.norm();
         // `!movement.le(...)` is also true for NaN, which results if the eigenvectors overflow.
         if !movement.le(&NEAR_DEFECTIVE) {

@@ -172,6 +172,11 @@ impl BandwidthFinding {
         self.rests_above_band.contains(&name)
     }
 
+    /// Returns whether a metric depends on the response below the band.
+    pub fn rests_below(&self, name: &str) -> bool {
+        self.rests_below_band.contains(&name)
+    }
+
     /// Stores a response's metrics, and the reasons for those that are missing.
     pub(super) fn store(&mut self, bandwidth: &Bandwidth) {
         let [omega_bw, omega_phase, omega_gain, omega_180, phase_delay] = metric_values(bandwidth);

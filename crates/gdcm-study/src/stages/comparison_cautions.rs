@@ -28,8 +28,8 @@ impl ComparisonInput<'_> {
     ) -> Option<Caution> {
         let mut responses =
             GainOutOfRange::of_models(&compared.physics.polar, &compared.identified.polar);
-        // If coherence excludes all frequencies with such a gain, G is defined and no caution is
-        // needed.
+        // A response whose delta gain G is still determined, because the frequencies with such a
+        // gain have no weight, needs no caution.
         responses.retain(|gain| delta.gain[gain.pair].is_none());
         if responses.is_empty() {
             return None;
@@ -44,7 +44,8 @@ impl ComparisonInput<'_> {
     }
 
     /// Returns the caution about the identified representative's frequencies that have no weight,
-    /// or that its coherence is not used (M4a).
+    /// or that its coherence is not used (M4a). A model without coherence needs no caution: all its
+    /// frequencies count.
     pub(super) fn coherence_caution(
         &self,
         compared: &ComparedModel,
@@ -58,18 +59,20 @@ impl ComparisonInput<'_> {
             return Some(Caution::CoherenceNotUsed);
         };
         let points = self.grid.grid.len();
-        // Responses with a weighted frequency; responses without weight at some, with their number.
-        let mut used = 0;
+        // Number of responses with a weighted frequency.
+        let mut weighed = 0;
+        // Responses with frequencies without weight, and the number of these frequencies.
         let mut left_out: Vec<(Pair, usize)> = Vec::new();
         for (pair, curve) in compared.polar.curves().iter() {
             if curve.is_none() {
                 continue;
             }
+            // `None` without coherence or threshold, which is excluded above.
             let Some(count) = compared.weighted_frequencies(pair) else {
                 continue;
             };
             if count > 0 {
-                used += 1;
+                weighed += 1;
             }
             if count < points {
                 left_out.push((pair, points - count));
@@ -81,7 +84,7 @@ impl ComparisonInput<'_> {
         left_out.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
         Some(Caution::NotCoherent {
             threshold,
-            weighed: used,
+            weighed,
             left_out,
             points,
         })

@@ -1,11 +1,12 @@
 //! Fits a study's physics parameters (M18.2).
 //!
 //! ```text
-//! 1  select the conditions that are not held out and have comparable representatives (M5)
-//! 2  match their runs with bases; refuse runs whose base is rejected or set aside (M18.1)
+//! 1  match each condition's runs with bases; refuse runs whose base is rejected or set aside
+//!    (M18.1)
+//! 2  select the conditions that are not held out and have comparable representatives (M5)
 //! 3  build the family of the physics representative, and compute the responses of the identified
 //!    representative and of the other kept identified models, on the grid of the fit
-//! 4  diagnose                                                             (`gdcm_method::physics`)
+//! 4  diagnose: parameter values, intervals, scores and a verdict          (`gdcm_method::physics`)
 //! ```
 //!
 //! A run is a model with moved parameters, its base the same model without; the family is the
@@ -40,7 +41,7 @@ use crate::results::physics_findings::{
 /// The diagnosis, or why there is none.
 pub(crate) type FindingsOutcome = Result<Arc<PhysicsFindings>, PhysicsFailure>;
 
-/// A condition, and its models compared as in the dataset.
+/// A condition, and the comparison of its models before parameters or couplings change them.
 #[derive(Clone)]
 pub(crate) struct PhysicsSource {
     pub(crate) condition: Arc<Condition>,
@@ -85,7 +86,8 @@ impl PhysicsSource {
     }
 }
 
-/// Inputs from a condition on which the fit and the moved models depend.
+/// Inputs from a condition on which the diagnosis and the moved physics models (`physics_models`)
+/// depend.
 #[derive(Clone, Debug)]
 struct ConditionKey {
     condition: Arc<Condition>,
@@ -116,7 +118,7 @@ struct Representatives {
     usable: PairTable<bool>,
 }
 
-/// All inputs on which the diagnosis depends.
+/// All inputs on which the diagnosis depends; the diagnosis is kept until they change.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct FindingsKey {
     settings: PhysicsSettings,
@@ -215,7 +217,7 @@ impl Fitting<'_> {
     /// left out.
     fn condition(&mut self, source: &PhysicsSource) -> Option<PhysicsCondition> {
         let id = source.condition.id();
-        // Step 2.
+        // Step 1.
         let is_used = |model: &Model| source.uses(self.study, model);
         let matched = MatchedRuns::new(&source.condition, self.parameters, &is_used);
         for run in &matched.refused {
@@ -224,7 +226,7 @@ impl Fitting<'_> {
                 run: run.clone(),
             });
         }
-        // Steps 1 and 3.
+        // Steps 2 and 3.
         match self.fitted_condition(source, &matched) {
             Ok(condition) => Some(condition),
             Err(why) => {
@@ -237,13 +239,13 @@ impl Fitting<'_> {
     }
 
     /// Returns a condition's data, or why the condition is left out: held out, not compared, or
-    /// without usable runs (steps 1 and 3).
+    /// without usable runs (steps 2 and 3).
     fn fitted_condition(
         &self,
         source: &PhysicsSource,
         matched: &MatchedRuns<'_>,
     ) -> Result<PhysicsCondition, NotFitted> {
-        // Step 1.
+        // Step 2.
         if source.is_held_out {
             return Err(NotFitted::HeldOut);
         }
@@ -322,7 +324,8 @@ fn other_models(representative: &Representative) -> Vec<usize> {
     others
 }
 
-/// Returns the responses available in both representatives (M6, M6a).
+/// Returns the responses with a mismatch between the representatives: both have the response, some
+/// frequency counts, and the gain is in the computable range (M6, M6a).
 fn usable(comparison: &Comparison) -> PairTable<bool> {
     comparison
         .representative

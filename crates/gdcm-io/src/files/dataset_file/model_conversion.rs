@@ -2,7 +2,8 @@
 //!
 //! A *bundle* holds a condition's physics models, or its identified models. A physics model with
 //! moved parameters is no bundle member: in a *run*, a single parameter is moved, in a *rerun*,
-//! several together (M18). A *draft* is a model before its checks.
+//! several together (M18). A *draft* is a model before its checks. Its *bands* are the standard
+//! deviations of its response over frequency; *valid bands* are ranges of frequencies.
 
 use nalgebra::DMatrix;
 
@@ -23,7 +24,8 @@ use crate::content_fault::{ContentError, ContentFault};
 use crate::json_reading::{Limited, Nested};
 
 impl ModelText {
-    /// Returns the keys that are present but have no meaning for models in this kind of bundle.
+    /// Returns the keys that are present but have no meaning for models in this kind of bundle. The
+    /// keys from `condition` on describe models outside a dataset, which have the same form.
     pub(super) fn misplaced_keys(&self, kind: BundleKind) -> Vec<&'static str> {
         let is_physics = kind == BundleKind::Physics;
         let mut misplaced = Vec::new();
@@ -74,8 +76,9 @@ impl ModelText {
         }
     }
 
-    /// Returns a physics model's origin: perturbed, if it has moved parameters and either no role
-    /// or the role "nominal", because it is no bundle member; else the origin given by its role.
+    /// Returns a physics model's origin, given by its role. A model with moved parameters may omit
+    /// the role or call itself nominal; it is perturbed all the same, because it is no bundle
+    /// member.
     ///
     /// # Errors
     /// Fails if a bundle member lacks a role, or if a role is neither nominal nor perturbed.
@@ -126,6 +129,8 @@ impl ModelText {
         self.into_draft(origin)
     }
 
+    /// Converts the file's entry to a draft with this origin, without moved parameters, which the
+    /// reader of datasets adds.
     pub(crate) fn into_draft(self, origin: Origin) -> ModelDraft {
         let bands = match origin {
             Origin::Identified { .. } => self.bands.map(DeviationsText::into_draft),
@@ -176,6 +181,7 @@ impl ModelText {
                 perturbation,
                 ..Self::default()
             },
+            // In a dataset the bundle implies the role; outside, `model_text` adds it.
             Origin::Identified { method, order } => Self {
                 method,
                 order,

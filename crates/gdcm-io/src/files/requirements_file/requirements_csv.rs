@@ -3,7 +3,9 @@
 //! A *finding* holds the values for one of four questions (bandwidth, modes, summary costs, time
 //! histories) in a condition. Its *role* is the model version: the physics representative,
 //! uncorrected, under the condition's own correction or under the schedule, or the identified
-//! representative (M17).
+//! representative (M17). A finding on a mode holds values for up to three roles.
+//!
+//! A *swap* repeats the analysis with another model of a bundle, for the intervals (M13.1).
 
 use std::io::{self, Write};
 
@@ -13,6 +15,7 @@ use gdcm_model::dataset::ConditionId;
 use gdcm_study::results::required_bandwidth::BandwidthFinding;
 use gdcm_study::results::required_modes::{ModeFinding, ModeNumbers};
 use gdcm_study::results::required_summary::SummaryFinding;
+use gdcm_study::results::requirement_role::RequirementRole;
 use gdcm_study::results::requirements::Requirements;
 use gdcm_study::results::time_histories::{HistoryFinding, TimeHistories, ToleranceFinding};
 use gdcm_words::missing_results::{no_bandwidth_text, no_mode_value_text, no_summary_text};
@@ -20,7 +23,8 @@ use gdcm_words::missing_results::{no_bandwidth_text, no_mode_value_text, no_summ
 use crate::csv_text::write_records;
 
 /// Column names in the CSV file, separated by blanks.
-const HEADING: &str = "question condition airspeed_kt role model output input mode record tolerance quantity value low high remark";
+const HEADING: &str = "question condition airspeed_kt role model output input mode record \
+    tolerance quantity value low high remark";
 
 /// Writes the CSV file: bandwidths, modes, summary costs, then time histories.
 pub(super) fn write_rows(
@@ -148,7 +152,7 @@ fn bandwidth_remark(finding: &BandwidthFinding, name: &'static str, is_known: bo
     if finding.rests_above(name) {
         remarks.push("depends on the response above the band".to_owned());
     }
-    if finding.rests_below_band.contains(&name) {
+    if finding.rests_below(name) {
         remarks.push("depends on the response below the band".to_owned());
     }
     if let Some(count) = finding.swaps_left_out.get(name) {
@@ -160,19 +164,25 @@ fn bandwidth_remark(finding: &BandwidthFinding, name: &'static str, is_known: bo
     remarks.join("; ")
 }
 
+/// Returns the CSV rows for a mode in each model that has it. The corrected model is the physics
+/// representative with the study's couplings: gains and delays move no pole.
 fn mode_rows(finding: &ModeFinding) -> Vec<Vec<String>> {
-    let mut rows = model_mode_rows(finding, "identified", &finding.identified);
+    let mut rows = role_mode_rows(finding, RequirementRole::Identified, &finding.identified);
     if let Some(numbers) = &finding.physics {
-        rows.extend(model_mode_rows(finding, "physics", numbers));
+        rows.extend(role_mode_rows(finding, RequirementRole::Physics, numbers));
     }
     if let Some(numbers) = &finding.corrected {
-        rows.extend(model_mode_rows(finding, "corrected", numbers));
+        rows.extend(role_mode_rows(finding, RequirementRole::Corrected, numbers));
     }
     rows
 }
 
 /// Returns the CSV rows for a mode in the model with this role.
-fn model_mode_rows(finding: &ModeFinding, role: &str, numbers: &ModeNumbers) -> Vec<Vec<String>> {
+fn role_mode_rows(
+    finding: &ModeFinding,
+    role: RequirementRole,
+    numbers: &ModeNumbers,
+) -> Vec<Vec<String>> {
     let mode = match finding.name {
         Some(name) => format!("{} {name}", finding.number),
         None => finding.number.to_string(),
@@ -181,7 +191,7 @@ fn model_mode_rows(finding: &ModeFinding, role: &str, numbers: &ModeNumbers) -> 
         question: "modes",
         condition: finding.condition,
         airspeed_kt: finding.airspeed_kt,
-        role,
+        role: role.name(),
         model: &numbers.model,
         mode: &mode,
         ..Subject::default()

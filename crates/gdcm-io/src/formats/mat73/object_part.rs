@@ -1,6 +1,7 @@
 //! Objects of MATLAB classes, stored in a separate part of the file: the dataset
-//! `#subsystem#/MCOS`, whose elements are references to cells. The cells are the same as in files
-//! up to version 7, and are explained in `mat/subsystem/mod.rs`.
+//! `#subsystem#/MCOS`, whose elements are references to cells. The first cell is the directory,
+//! which lists the objects; other cells hold the values of their properties. The cells are the same
+//! as in files up to version 7, and are explained in `mat/subsystem/mod.rs`.
 
 use hdf5_pure::{Dataset, File, Object};
 
@@ -8,13 +9,13 @@ use crate::formats::mat::{LongWords, Subsystem};
 use crate::formats::mat73::dataset::{Elements, Order};
 use crate::formats::mat73::library_fault::library_fault;
 use crate::formats::mat73::object_references::Objects;
-use crate::formats::mat73::reader::Reader;
+use crate::formats::mat73::reader::{OUTERMOST, Reader};
 use crate::formats::variables::Value;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 use crate::variable_fault::unread::Unread;
 
-/// Size of a 64-bit integer element \[bytes\].
-const LONG_WORD: u64 = 8;
+/// Size of a 64-bit element, integer or double \[bytes\].
+const LONG_ELEMENT: u64 = 8;
 
 /// Cells of the object part; `long_words` contains those with 64-bit integers unrounded, by cell
 /// index.
@@ -57,6 +58,7 @@ pub(super) fn read_cells(
 ) -> Result<ObjectCells, VariableFault> {
     let reader = Reader {
         budget,
+        // Properties may refer to objects; these references stay integers.
         objects: &Objects::References,
     };
     let mut cells = Vec::new();
@@ -66,14 +68,15 @@ pub(super) fn read_cells(
             let size = dataset
                 .element_size()
                 .map_err(|error| library_fault(&error, ""))?;
-            if size == LONG_WORD {
+            if size == LONG_ELEMENT {
                 let elements = Elements::read(dataset, Order::Columns, "", budget)?;
+                // `None` for doubles.
                 if let Some(words) = elements.words("", budget)? {
                     long_words.insert(index, words);
                 }
             }
         }
-        cells.push(reader.value(object, "", 0)?);
+        cells.push(reader.value(object, "", OUTERMOST)?);
     }
     Ok(ObjectCells { cells, long_words })
 }

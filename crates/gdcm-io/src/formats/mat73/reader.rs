@@ -37,6 +37,8 @@ use crate::variable_fault::unread::Unread;
 
 /// Maximum nesting depth of values.
 const DEEPEST: usize = 64;
+/// Nesting depth of a variable, and of a cell in the object part.
+pub(super) const OUTERMOST: usize = 0;
 /// Memory for a value without its elements while it is read \[bytes\]: the value, and the library's
 /// data about it.
 const VALUE_MEMORY: u64 = 1024;
@@ -59,7 +61,7 @@ impl Reader<'_> {
         for Member { name, object } in self.members(root, "")? {
             // Skip the groups that hold other variables' contents.
             if name != "#refs#" && name != "#subsystem#" {
-                let value = self.value(&object, &name, 0)?;
+                let value = self.value(&object, &name, OUTERMOST)?;
                 variables.push(Variable { name, value });
             }
         }

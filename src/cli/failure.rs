@@ -72,6 +72,7 @@ pub(super) enum Failure {
     NotIdentified { inputs: String },
     #[error("no thread can be started: {reason}")]
     NoThreads { reason: String },
+    /// No model was identified, or the identified models cannot be added to the dataset.
     #[error("{reason}")]
     NoModels { reason: String },
     #[error("no flight can be planned: {reason}")]
@@ -175,6 +176,7 @@ impl Failure {
             | Failure::Cancelled(_)
             | Failure::Deviating { .. }
             | Failure::StandardOutput { .. } => NOT_DONE,
+            // An analysis without a result is no wrong input.
             Failure::File(FileError::Export { fault, .. }) | Failure::Export(fault)
                 if fault.is_of_analysis() =>
             {

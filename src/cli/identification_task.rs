@@ -1,9 +1,6 @@
 //! Identification of models from a condition's flight records: the task, its cautions with the
 //! options that remove their causes, and the texts about its result. `identify` creates the tasks;
 //! `identifications` and `plan` run them.
-//!
-//! chi2/dof is the mean squared residual relative to the noise, 1 if the model explains everything
-//! but the noise (M14).
 
 use std::path::{Path, PathBuf};
 
@@ -29,8 +26,8 @@ use super::progress::ProgressReceiver;
 use super::record_table::record_table;
 use crate::executor::Pool;
 
-/// Number of models that the file contains in addition to the bundle: the refined and the unrefined
-/// one.
+/// Number of models that the file contains in addition to [`Identification::bundle`]: the refined
+/// and the unrefined one.
 const REFINED_AND_UNREFINED: usize = 2;
 /// File name for the identified models, except with `--every-condition` (`output_path`).
 pub(super) const IDENTIFIED_FILE: &str = "identified.json";
@@ -55,9 +52,11 @@ impl IdentificationTask {
         let mut request =
             IdentificationRequest::from_used(records.iter(), preparation.clone(), band_rad_s)
                 .map_err(|why| {
+                    // All records are held out: a group is not empty, and its records are usable.
                     Failure::option("--hold-out", format!("{}{why}", prefix(condition)))
                 })?;
         arguments.search().set(&mut request.options);
+        // References are recorded signals that drove the loop from outside, the last inputs.
         request.options.references = arguments.references().len();
         Ok(Self {
             request,
@@ -140,6 +139,8 @@ impl IdentificationTask {
             return note;
         };
         let outputs = self.outputs();
+        // Two records that contradict each other are alternatives: it is unknown which is wrong.
+        // A record's options belong together.
         let mut remedies: Vec<String> = Vec::new();
         for record in records {
             let Some(fault) = &record.fault else {
@@ -193,7 +194,8 @@ impl IdentificationTask {
         }
     }
 
-    /// Returns a line with the result and the path to its file.
+    /// Returns a line with the result and the path to its file. In it, chi2/dof is the mean squared
+    /// residual relative to the noise, 1 if the model explains everything but the noise (M14).
     pub(super) fn outcome(&self, file: &Path, found: &Identification) -> String {
         let held_out = match found.held_out_cost {
             Some(cost) => format!(", {cost:.2} for the held-out records"),

@@ -144,6 +144,8 @@ impl<'a> WantedFlights<'a> {
         band: Band,
     ) -> Result<Self, Failure> {
         let mut channels = channels.clone();
+        // The references are the last inputs; the model does not contain them, and no sweep of
+        // them is planned.
         let references = arguments.source.references().len();
         channels.inputs.truncate(channels.inputs.len() - references);
         let channels = planned_channels(&channels);
@@ -201,7 +203,7 @@ impl<'a> WantedFlights<'a> {
         let mut sweeps: Vec<SweepPlan> = Vec::new();
         for input in 0..information.inputs() {
             let sweep = self.sweep(information, input).ok_or_else(no_information)?;
-            let plan = planner.sweep_plan(sweep, &TABLE_REPEATS, planner.middle());
+            let plan = planner.sweep_plan(sweep, &TABLE_REPEATS, planner.middle_omega());
             sweeps.push(plan.ok_or_else(|| self.no_plan())?);
         }
         let mut targets: Vec<TargetPlan> = Vec::new();
@@ -250,6 +252,7 @@ impl<'a> WantedFlights<'a> {
         }
         if let Some(amplitude) = self.amplitudes.get(input).copied().flatten() {
             standard.sweep.amplitude = amplitude;
+            // Reports mark only the amplitude as assumed.
             standard.is_assumed = false;
         }
         Some(standard)

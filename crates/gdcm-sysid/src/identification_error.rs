@@ -8,7 +8,7 @@ use crate::spectra::preparation_settings::PreparationError;
 use crate::spectra::scales::ScalingError;
 use crate::spectra::signal_names::names;
 
-/// Maximum order that may be requested.
+/// Maximum model order that may be requested.
 pub const HIGHEST_ORDER: usize = 60;
 /// Maximum past window that may be requested.
 pub const LONGEST_PAST: usize = 60;
@@ -37,8 +37,7 @@ pub enum IdentificationError {
         lowest: f64,
         /// Required length: 1.5 periods at the lower end of the band \[s\].
         needed_s: f64,
-        /// Recommended length: 5 periods, or, in a single segment, 3 for each input if that is
-        /// longer \[s\].
+        /// Recommended length: 5 periods; in a single segment, at least 3 for each input \[s\].
         better_s: f64,
         /// Lowest lower band end for which the longest segment is long enough \[rad/s\].
         enough: f64,
@@ -50,7 +49,8 @@ pub enum IdentificationError {
         widen the band, or leave out channels"
     )]
     TooFewFigures {
-        /// Number of real values in the lines, less two for each output and segment.
+        /// Number of real values in the lines, less two for each output and segment, which are
+        /// lost to the segment's unknown step and drift.
         figures: usize,
         needed: usize,
         /// Number of unknowns in a first-order model.
@@ -82,6 +82,8 @@ pub enum IdentificationError {
         greater than 0"
     )]
     Settings,
+    /// No input of the model remains: a reference is a recorded signal that drove the loop from
+    /// outside.
     #[error(
         "every input is given as a reference, but the model needs at least one input: remove a reference"
     )]

@@ -104,8 +104,8 @@ pub fn coupling_remark_text(remark: &CouplingRemark, dataset: &Dataset) -> Strin
             model,
             why,
         } => format!(
-            "The effect of the couplings on \"{model}\" (condition {condition}) cannot be computed: {}.",
-            no_poles_text(why)
+            "The effect of the couplings on \"{model}\" (condition {condition}) cannot be \
+            computed: {why}."
         ),
         CouplingRemark::PartlyLeftOut { fits, conditions } => format!(
             "J of conditions left out, and the error bars of the couplings, are based on {fits} \

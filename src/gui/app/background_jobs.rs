@@ -3,24 +3,30 @@
 //! its trigger (often in `wanted_jobs.rs`) and its destination. The *tools* are kept from job to
 //! job: an engine with its caches, an executor that uses all cores, or nothing.
 //!
+//! A kind's *report* is its displayed progress. The *withdrawal* of a kind with its own trigger
+//! resets the trigger after a stop. A kind with an *own stop* is not stopped with the others while
+//! a view in front has a *Stop* for it.
+//!
 //! The kinds share a thread pool. Order of urgency, and its reasons:
 //!
-//! | class  | kinds                                  | reason                              |
-//! |--------|----------------------------------------|-------------------------------------|
-//! | live   | live analysis                          | follows every drag                  |
-//! | short  | curves, modes                          | first picture of the condition      |
-//! | short  | assessment, across conditions          | tables and plots in visible views   |
-//! | short  | trade-off of α                         | plot beside its slider              |
-//! | short  | requirements                           | tables and plots in visible views   |
-//! | short  | dry run of an export                   | list of files in the dialog         |
-//! | short  | test input, record history, simulation | time responses in visible views     |
-//! | long   | costs of constraining and releasing    | seconds; hints beside the matrix    |
-//! | long   | variants, proofs                       | complete the displayed results      |
-//! | long   | couplings, physics parameters          | views that show their progress      |
-//! | long   | responses to held-out records          | a view that shows its progress      |
-//! | long   | report, and its dry run                | requested explicitly; seconds       |
-//! | long   | error bars                             | repeated after every change         |
-//! | long   | identification                         | minutes; occupies a thread longest  |
+//! | class | kinds                                           | reason                            |
+//! |-------|-------------------------------------------------|-----------------------------------|
+//! | live  | live analysis                                   | follows every drag                |
+//! | short | curves, modes                                   | first picture of the condition    |
+//! | short | assessment, across conditions                   | tables and plots in visible views |
+//! | short | trade-off of α                                  | plot beside its slider            |
+//! | short | requirements                                    | tables and plots in visible views |
+//! | short | dry run of an export (`export_plans`)           | list of files in the dialog       |
+//! | short | test input (`test_answers`)                     | time responses in visible views   |
+//! | short | record history, simulation                      | time responses in visible views   |
+//! | long  | costs of constraining and releasing (`toggles`) | seconds; hints beside the matrix  |
+//! | long  | variants, proofs                                | complete the displayed results    |
+//! | long  | couplings, physics parameters                   | views that show their progress    |
+//! | long  | held-out records (`time_histories`)             | a view that shows its progress    |
+//! | long  | dry run of a report (`report_contents`)         | requested explicitly; seconds     |
+//! | long  | report                                          | requested explicitly; seconds     |
+//! | long  | error bars                                      | repeated after every change       |
+//! | long  | identification                                  | minutes; keeps a thread longest   |
 
 use std::io;
 use std::rc::Rc;
@@ -210,7 +216,7 @@ fn add_short_kinds(kinds: &mut JobKinds<'_>, engines: &Engines) {
     kinds.add(LaneClass::Short, cores, simulations);
 }
 
-/// Adds the kinds whose jobs may take minutes, the most urgent first.
+/// Adds the kinds whose jobs take seconds to minutes, the most urgent first.
 fn add_long_kinds(kinds: &mut JobKinds<'_>, engines: &Engines) {
     add_long_kinds_of_results(kinds, engines);
     let couplings = JobKind::new(

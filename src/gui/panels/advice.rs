@@ -1,10 +1,10 @@
 //! Recommended next steps, shown with the verdict.
 //!
-//! A held (constrained) response has its net gain matched exactly, its delay as far as possible.
-//! Its gain is matched unless the constraints conflict, that is, unless no gains within their
-//! bounds meet all of them; a remedy is a single change that resolves the conflict. A doubt is an
-//! apparent difference in sign or unit between the physics and the identified models. Couplings mix
-//! the inputs and feed outputs back to them (M16: docs/couplings.md).
+//! A held (constrained) response has its net gain matched exactly, unless the constraints conflict:
+//! no gains within their bounds meet all of them. Its delay is matched as far as possible. A remedy
+//! is a single change that resolves a conflict. A doubt is an apparent difference in sign or unit
+//! between the physics and the identified models. Couplings mix the inputs and feed outputs back to
+//! them (M16: docs/couplings.md).
 
 use gdcm_method::correction::Channel;
 use gdcm_method::correction::remedy::Remedy;
@@ -86,7 +86,7 @@ impl Advice {
     /// phases and couplings.
     ///
     /// 1. Reverse a channel whose sign is doubtful.
-    /// 2. Reject the suggested physics models.
+    /// 2. Reject the physics models that are suggested as outliers.
     /// 3. Constrain responses, if none are constrained.
     /// 4. Resolve a gain conflict.
     /// 5. Correct the phase, if it is not corrected, or if held delays are not matched.
@@ -130,6 +130,7 @@ impl Advice {
         // Step 7.
         let mut steps = vec![Step::new("Export corrections…", export())];
         if phase == PhaseCorrection::Lead {
+            // A lead makes up for a lag, whose possible causes are among the reasons.
             steps.push(Step::reasons());
         }
         Self::without_note(steps)

@@ -17,6 +17,15 @@ pub(super) const PICTURE_HEAD: f32 = 18.0;
 /// Row height in the picture \[pt\].
 const PICTURE_ROW: f32 = 17.0;
 
+/// Vertical centre of the column headings, below the picture's top \[pt\].
+const HEADING_CENTER: f32 = 8.0;
+
+/// Centre of the flight-state symbol, from the picture's left edge \[pt\].
+const SYMBOL_CENTER: f32 = 6.0;
+
+/// Right end of the airspeed, from the picture's left edge \[pt\].
+const AIRSPEED_END: f32 = 40.0;
+
 /// Left edge of the cells in the picture \[pt\].
 const PICTURE_CELLS_LEFT: f32 = 48.0;
 
@@ -26,11 +35,12 @@ pub(super) fn cost_picture_height(state: &State) -> f32 {
     PICTURE_HEAD + PICTURE_ROW * rows as f32
 }
 
-/// Paints the first conditions as a picture without interaction: symbols, airspeeds and costs.
+/// Paints the first conditions as a picture without interaction: symbols, airspeeds, and a cost for
+/// each column of responses.
 pub fn cost_picture_ui(ui: &Ui, area: Rect, state: &State, palette: &Palette) {
     let map = ConditionRows::picture(state, PICTURE_CELLS_LEFT, area.width());
     for (place, column) in map.columns().iter().enumerate() {
-        let at = pos2(map.center(area, place), area.top() + 8.0);
+        let at = pos2(map.center(area, place), area.top() + HEADING_CENTER);
         ui.painter().text(
             at,
             Align2::CENTER_CENTER,
@@ -53,26 +63,26 @@ pub fn cost_picture_ui(ui: &Ui, area: Rect, state: &State, palette: &Palette) {
         let flight_state = condition.flight_state();
         map.paint_symbol(
             ui,
-            pos2(row.left() + 6.0, row.center().y),
+            pos2(row.left() + SYMBOL_CENTER, row.center().y),
             flight_state,
             palette,
         );
         let airspeed = flight_state.airspeed_kt.to_string();
         painted_text(
             ui,
-            row.with_max_x(row.left() + 40.0),
+            row.with_max_x(row.left() + AIRSPEED_END),
             AT_RIGHT_END,
             &airspeed,
             small(),
             palette.dim_text,
         );
         for (place, column) in map.columns().iter().enumerate() {
-            let Some(worst) = cost_of_column(state, condition.id(), column) else {
+            let Some(column_cost) = cost_of_column(state, condition.id(), column) else {
                 continue;
             };
             let at = pos2(map.center(row, place), row.center().y);
             let cell = Rect::from_center_size(at, vec2(2.0 * HALF_CELL_WIDTH, CELL_HEIGHT));
-            paint_cost(ui, cell, worst.cost, palette);
+            paint_cost(ui, cell, column_cost.cost, palette);
         }
     }
 }

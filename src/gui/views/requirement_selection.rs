@@ -21,6 +21,7 @@ use crate::gui::state::window_state::State;
 /// Returns the grid for the displayed results; `None` until the requirements are available.
 pub fn shown_grid(state: &State) -> Option<RequirementGrid> {
     let requirements = state.requirements()?;
+    // Histories count only while records are held out; otherwise there is no such job.
     let mut histories = None;
     if time_histories_job(state).is_some() {
         histories = state.time_histories().map(AsRef::as_ref);
@@ -83,8 +84,7 @@ pub(super) fn selected_cell<'a>(
     })
 }
 
-/// Returns the commands that select a cell's requirement, condition and response in the whole
-/// window.
+/// Returns the commands that select a cell's requirement, condition and response.
 pub(super) fn select_commands(
     state: &State,
     requirement: Requirement,

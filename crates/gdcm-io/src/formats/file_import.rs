@@ -1,5 +1,5 @@
 //! Imports files and folders: each file is read in its format ([`importer_of`]), and its contents
-//! are passed on.
+//! are passed to the caller's `take`.
 //!
 //! [`import`] reads files and folders, [`import_file`] a single file, and [`import_bytes`] a file
 //! whose bytes are in memory.
@@ -105,12 +105,12 @@ pub(crate) fn import(
 }
 
 /// Puts the file name before each remark that does not begin with it.
-pub(crate) fn with_file_name(name: &str, words: Vec<String>) -> impl Iterator<Item = String> {
-    words.into_iter().map(move |words| {
-        if words.starts_with(name) {
-            words
+pub(crate) fn with_file_name(name: &str, remarks: Vec<String>) -> impl Iterator<Item = String> {
+    remarks.into_iter().map(move |remark| {
+        if remark.starts_with(name) {
+            remark
         } else {
-            format!("{name}: {words}")
+            format!("{name}: {remark}")
         }
     })
 }

@@ -96,6 +96,8 @@ const FOREIGN: [Foreign; 13] = [
 /// Importer that recognises unsupported formats and rejects them with export instructions.
 pub(super) const FOREIGN_FORMAT: Importer = Importer {
     name: "a file of an unsupported format",
+    // Tables and arrays saved from Python. Only with a known extension is a file in a folder not
+    // skipped silently, but rejected with instructions.
     endings: &["parquet", "feather", "pkl"],
     recognises: |bytes, _| find_foreign(bytes).is_some(),
     read: |bytes, path, _| Err(FileError::variables(path, unsupported(bytes))),
@@ -105,6 +107,7 @@ pub(super) const FOREIGN_FORMAT: Importer = Importer {
 fn unsupported(bytes: &[u8]) -> VariableFault {
     match find_foreign(bytes) {
         Some(Foreign { name, remedy, .. }) => foreign_file(name, remedy),
+        // Not reached through `importer_of`, which chooses this importer by a signature.
         None => foreign_file("a file", AS_TABLE),
     }
 }

@@ -11,7 +11,9 @@
 //!
 //! over conditions, frequencies and responses. `H` is the physics response and `R'` the flight
 //! response without its channels' delays and leads, both p x m; `K_0` and `M_0` are the couplings
-//! from the previous pass; `q` is a response's weight (`weighted_condition`).
+//! from the previous pass; `q` is a response's weight (`weighted_condition`). The residual is that
+//! of `R' = (I - H K)^-1 H M`, multiplied by `I - H K`, which makes it linear in `theta`, and by
+//! the previous pass's `S`.
 //!
 //! In input column i, the unknowns `M_ji` and `K_jo` multiply the column `F[:,j]` times 1 and times
 //! `R'_oi`. With these factors as `t`, the entries in `G` and `b` are sums over the frequencies,
@@ -22,7 +24,8 @@
 //!        F <- (I - H K_0)^-1 H,   S = I + F K_0
 //!    for each input column i:
 //!        for each frequency in the chunk:
-//! 2          q^2 <- weights of column i, which depend on column i of F M_0
+//! 2          q^2 <- weights of column i, which depend on column i of F M_0, the model
+//!                   response after the previous pass
 //! 3          t   <- (1, R'_oi for every fed-back output o)
 //! 4          z   <- F^H q^2 (S R')[:,i],   S R' = R' + F K_0 R'
 //! 5          b[(a, j)] += Re conj(t_a) z_j
@@ -143,6 +146,7 @@ impl ConditionBlocks {
     /// Returns the memory needed for a condition's blocks \[bytes\].
     pub(super) fn bytes(inputs: usize, fed_back: usize) -> usize {
         let rows = inputs * (fed_back + 1) + pair_count(fed_back);
+        // The products of real parts and those of imaginary parts.
         2 * std::mem::size_of::<f64>() * rows * pair_count(inputs)
     }
 }

@@ -44,6 +44,7 @@ impl BundleChoice {
 pub struct ConditionChoice {
     pub physics: BundleChoice,
     pub identified: BundleChoice,
+    /// Whether the condition is chosen for the schedule, the fit of the corrections over airspeed.
     pub scheduled: bool,
     /// Whether the condition is held out: it is analysed and assessed, but not used to fit the
     /// schedule, couplings or physics parameters, which it can therefore validate.
@@ -62,7 +63,7 @@ impl Default for ConditionChoice {
 }
 
 impl ConditionChoice {
-    /// Restores every rejected model in both bundles.
+    /// Restores every rejected model in both bundles; pinned models remain pinned.
     pub(crate) fn restore_all(&mut self) {
         for choice in [&mut self.physics, &mut self.identified] {
             choice.rejected.clear();

@@ -225,8 +225,8 @@ impl<'a> ConditionBandwidths<'a> {
                     Evaluation::Exact => &exact,
                     Evaluation::Interpolated => &interpolated,
                 };
-                // The line for the phase delay has 400 points. `response` evaluates only its end
-                // points, like the crossings; the points between them are always interpolated.
+                // The phase delay is computed from 400 points. The end points, like the crossings,
+                // are evaluated with `response`; the points between them are always interpolated.
                 AttitudeResponse::new(response, output, &search_frequencies(band), band)?
                     .sampled_by(&interpolated)
             }
@@ -234,6 +234,7 @@ impl<'a> ConditionBandwidths<'a> {
         let settings = BandwidthSettings {
             command: study.requirements.command_of(&channel.name),
             band,
+            // A model corrected with leads is not valid above the band (M15.6).
             above_band: if correction.has_leads {
                 AboveBand::Refused
             } else {
@@ -253,7 +254,7 @@ impl<'a> ConditionBandwidths<'a> {
     /// if there are none although a metric is defined, adds why.
     fn add_intervals(&self, finding: &mut BandwidthFinding, bandwidth: &Bandwidth) {
         let level = self.requested.analysis.study.settings.uncertainty.level;
-        let why = match finding.role {
+        let why_none = match finding.role {
             RequirementRole::Physics | RequirementRole::Corrected => {
                 self.add_swap_intervals(finding, bandwidth, level);
                 if self.requested.analysis.uncertainty.is_some() {
@@ -273,7 +274,7 @@ impl<'a> ConditionBandwidths<'a> {
             }
         };
         if finding.interval.is_empty() && metrics(bandwidth).iter().any(Result::is_ok) {
-            finding.absent.insert("interval", why);
+            finding.absent.insert("interval", why_none);
         }
     }
 
@@ -321,6 +322,8 @@ impl<'a> ConditionBandwidths<'a> {
     fn swapped(&self, swap: &ModelSwap, pair: Pair, role: RequirementRole) -> Option<MetricValues> {
         let correction = match role {
             RequirementRole::Corrected => {
+                // Only the design of these lead filters is used; the leads are the swap's, given by
+                // its negative delays.
                 let leads = self.requested.result.correction.leads.as_ref();
                 BandwidthCorrection::from_scalars(swap.figures.as_deref()?, pair, leads)?
             }

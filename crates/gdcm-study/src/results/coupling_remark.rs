@@ -7,7 +7,7 @@ use nalgebra::Complex;
 
 use gdcm_method::couplings::coupling_shares::{FeedbackShare, MixingShare};
 use gdcm_method::couplings::problem::CouplingError;
-use gdcm_method::couplings::{LoopMargin, Unknown};
+use gdcm_method::couplings::{LoopMargin, PoleShiftError, Unknown};
 use gdcm_model::dataset::{ConditionId, Pair};
 
 use super::correction_costs::{AxisCost, CorrectionCost};
@@ -85,7 +85,7 @@ pub enum CouplingRemark {
     ModelRefused {
         condition: ConditionId,
         model: String,
-        why: NoPoles,
+        why: PoleShiftError,
     },
     /// Only `fits` of the `conditions` can be left out of the fit.
     PartlyLeftOut { fits: usize, conditions: usize },

@@ -50,8 +50,8 @@ pub struct ConditionCouplings {
     /// J without and with the couplings when the condition is left out of the fit; `None` if it is
     /// not used in the fit or could not be left out.
     pub left_out: Option<CorrectionCost>,
-    /// The other kept physics models with matrices whose poles with couplings are unavailable, for
-    /// example because the feedback loop cannot be closed.
+    /// The other kept state-space physics models for which poles with couplings are unavailable,
+    /// for example because the feedback loop cannot be closed.
     pub refused: Vec<RefusedModel>,
 }
 
@@ -74,11 +74,11 @@ impl NoPoles {
     }
 }
 
-/// A physics model whose poles with couplings are unavailable.
+/// A state-space physics model whose poles with couplings are unavailable.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RefusedModel {
     pub model: String,
-    pub why: NoPoles,
+    pub why: PoleShiftError,
 }
 
 /// A pole with a positive real part in a kept physics model, absent without the couplings.
@@ -115,8 +115,8 @@ pub struct CouplingsAssessment {
     /// Newly unstable poles in all kept physics models.
     pub unstable: Vec<UnstablePole>,
     /// Number of conditions in which leads are offered but not used
-    /// ([`ConditionAnalysis::offer`](super::analysis::ConditionAnalysis::offer)): feedback then
-    /// replaces the missing lead.
+    /// ([`ConditionAnalysis::offer`](super::analysis::ConditionAnalysis::offer)): feedback may then
+    /// make up for the missing lead.
     pub unused_lead_offers: usize,
 }
 
@@ -145,6 +145,7 @@ impl CouplingsAssessment {
 
     /// Returns `K`, inputs x outputs, with its error bars.
     pub fn feedback(&self) -> DMatrix<CouplingEntry> {
+        // Only the bars of the mixing depend on the airspeed.
         let bars = self.bars(self.mean_airspeed_kt());
         let bars = bars.as_ref().map(|bars| MatrixBars {
             half_widths: &bars.feedback,

@@ -96,7 +96,7 @@ struct ConditionPoles {
     representative: Result<Vec<PoleShift>, NoPoles>,
     /// Newly unstable poles in every kept model.
     unstable: Vec<UnstablePole>,
-    /// The other kept models with matrices whose poles with couplings are unavailable.
+    /// The other kept state-space models whose poles with couplings are unavailable.
     refused: Vec<RefusedModel>,
 }
 
@@ -138,9 +138,7 @@ fn condition_poles(
         }
         if is_representative {
             poles.representative = shifts;
-        } else if let Err(why) = shifts
-            && model.state_space().is_some()
-        {
+        } else if let Err(NoPoles::Failed(why)) = shifts {
             poles.refused.push(RefusedModel {
                 model: model.name.clone(),
                 why,

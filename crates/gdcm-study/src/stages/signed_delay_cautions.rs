@@ -10,15 +10,15 @@ use crate::decisions::study::Study;
 use crate::results::analysis::Outcomes;
 use crate::results::scheduled_conditions::in_schedule;
 
-/// Maximum distance \[s\] between a signed delay and its mean over the conditions that a schedule
-/// can reproduce.
+/// Maximum distance \[s\] that a schedule can reproduce between a signed delay and its mean over
+/// the conditions.
 const APART_S: f64 = 0.02;
 /// Signed delays of smaller magnitude than this \[s\] are negligible, so that their sign says
 /// nothing.
 const LEAST_DELAY_S: f64 = 2e-3;
 
 /// Returns cautions about the channels for which no schedule can reproduce the signed delays in all
-/// conditions.
+/// conditions. Conditions without leads are left out.
 pub(crate) fn signed_delays_apart(study: &Study, outcomes: &Outcomes) -> Vec<ScheduleCaution> {
     let mut leads = Vec::new();
     for result in in_schedule(study, outcomes) {
@@ -33,7 +33,8 @@ pub(crate) fn signed_delays_apart(study: &Study, outcomes: &Outcomes) -> Vec<Sch
 
 /// Returns the caution about a channel, which names the condition farthest from the mean. There is
 /// a caution if this condition's distance is too large, or if some conditions need a lead and
-/// others a delay; none for fewer than two conditions.
+/// others a delay, so that the channel would change from one to the other over airspeed; none for
+/// fewer than two conditions.
 fn signed_delay_apart(
     leads: &[(ConditionId, &ChannelLeads)],
     channel: Channel,

@@ -86,7 +86,7 @@ impl FlightPlanner<'_> {
     pub fn standard_plan(&self) -> Option<FlightPlan> {
         let mut sweeps = Vec::with_capacity(self.information().inputs());
         for sweep in &self.information().standard_sweeps {
-            sweeps.push(self.sweep_plan(*sweep, &TABLE_REPEATS, self.middle())?);
+            sweeps.push(self.sweep_plan(*sweep, &TABLE_REPEATS, self.middle_omega())?);
         }
         Some(FlightPlan { sweeps })
     }
@@ -94,7 +94,7 @@ impl FlightPlanner<'_> {
     /// Returns the middle point of the frequencies at which standard deviations are known
     /// \[rad/s\].
     #[must_use]
-    pub fn middle(&self) -> f64 {
+    pub fn middle_omega(&self) -> f64 {
         let omega = self.information().bands.omega();
         omega[omega.len() / 2]
     }

@@ -72,8 +72,8 @@ impl FlightPlanner<'_> {
                 ..standard
             },
             pair: widest.pair,
-            omega: self.middle(),
-            now: self.interval_now(widest.pair, self.middle()),
+            omega: self.middle_omega(),
+            now: self.interval_now(widest.pair, self.middle_omega()),
             then: widest.then,
             is_enough: least != Least::NotWithin,
         })
@@ -93,7 +93,7 @@ impl FlightPlanner<'_> {
         }])?;
         let mut widest: Option<WidestResponse> = None;
         for &pair in pairs {
-            let then = self.interval(&after, pair, self.middle())?;
+            let then = self.interval(&after, pair, self.middle_omega())?;
             if widest.is_none_or(|other| then.half_db > other.then.half_db) {
                 widest = Some(WidestResponse { pair, then });
             }

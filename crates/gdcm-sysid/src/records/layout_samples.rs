@@ -14,9 +14,9 @@ use super::resampling::Resampling;
 use super::time_base::TimeBase;
 
 impl RecordLayout {
-    /// Returns the flight record from the chosen columns: resampled, if they have several clocks or
-    /// a rate is requested (M14.11); else each sample times its factor, interpolated only where a
-    /// delay is removed.
+    /// Returns the flight record from the chosen columns, each sample times its factor, delays
+    /// removed. The record is resampled if the columns have several clocks or a rate is requested
+    /// (M14.11); otherwise samples are interpolated only where a delay is removed.
     ///
     /// # Errors
     /// All problems with the columns.
@@ -26,6 +26,7 @@ impl RecordLayout {
         channels: &RecordChannels,
     ) -> Result<FlightRecord, Vec<LayoutProblem>> {
         let problems = self.problems(table, channels);
+        // A missing time base is among the problems.
         let Some(time) = self.time else {
             return Err(problems);
         };
@@ -34,7 +35,7 @@ impl RecordLayout {
         }
         match Resampling::new(self, table, channels) {
             Some(Ok(resampling)) => Ok(resampling.flight_record(table.name.clone())),
-            // An error of the resampling is among the problems.
+            // `Err` cannot occur here: it would be among the problems, and there are none.
             None | Some(Err(_)) => Ok(self.as_logged(table, time)),
         }
     }
@@ -113,7 +114,7 @@ impl RowSamples<'_> {
         for (sample, row) in self.rows.iter().enumerate() {
             let value = values.get(*row).copied().unwrap_or(f64::NAN);
             if value.is_finite() {
-                samples[(sample, channel)] = if gain == 1.0 { value } else { value * gain };
+                samples[(sample, channel)] = value * gain;
             }
         }
     }

@@ -5,7 +5,8 @@
 //! ```text
 //! true signal = signal filled by a straight line + sum_q c_q hat_q,   c_q the heights
 //! dt sample time, T length of the segment, whi highest line used, gap = missing samples times dt
-//! hat_q: linear B-splines, zero at both ends of the gap, at most pi/(2 whi) apart
+//! hat_q: linear B-splines, zero at both ends of the gap, at most pi/(2 whi) apart: a quarter of
+//!     the shortest period
 //!     count = ceil(2 whi (gap + dt) / pi), at most one a sample
 //! b_q(omega) = dt / sqrt(T) sum_n hat_q(n) e^(-j omega n dt)
 //! ```
@@ -63,8 +64,9 @@ pub(crate) struct HatGrid {
 
 /// Returns how many hats describe `missing` samples for lines up to `highest` \[rad/s\].
 pub(crate) fn hat_count(missing: usize, sample_time_s: f64, highest: f64) -> usize {
-    let gap_s = (missing + 1) as f64 * sample_time_s;
-    let wanted = (2.0 * highest * gap_s / PI).ceil() as usize;
+    // From the last sample before the gap to the first after it.
+    let interval_s = (missing + 1) as f64 * sample_time_s;
+    let wanted = (2.0 * highest * interval_s / PI).ceil() as usize;
     wanted.clamp(1, missing.max(1))
 }
 

@@ -1,4 +1,5 @@
-//! The condition of an explained result, and texts about its models and choices.
+//! The condition of an explained result, and texts about its models and choices. Leads are the
+//! channels' lead filters.
 
 use gdcm_method::correction::Channel;
 use gdcm_method::fidelity::Mismatch;
@@ -110,13 +111,14 @@ impl<'a> Context<'a> {
         }
     }
 
-    /// Lists the responses from which bounds and distances are computed.
+    /// Lists the responses from which the models' distances (M5) and the bounds on the channels'
+    /// gains and delays (M7) are computed.
     pub(super) fn measured_responses(&self) -> String {
         let measuring = self.analysis.study.dataset.measuring_pairs();
         format!("responses {}", self.pairs(measuring.marked()))
     }
 
-    /// Lists the responses constrained in this condition.
+    /// Lists the responses held (constrained) in this condition.
     pub(super) fn held(&self) -> String {
         format!("held {}", self.pairs(self.result.held().marked()))
     }
@@ -125,6 +127,7 @@ impl<'a> Context<'a> {
 /// Describes the weights, and the number of frequencies with nonzero weight; `None` if coherence is
 /// not used.
 pub(super) fn weight_words(mismatch: &Mismatch) -> Option<String> {
+    // A mismatch does not cover frequencies with zero weight.
     let count = mismatch.weights()?.len();
     Some(format!(
         "{count} of the frequencies, weighted by their coherence γ²: W = [1.58 (1 − e^(−γ²))]² (M4a)"

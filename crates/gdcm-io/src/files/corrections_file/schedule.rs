@@ -30,6 +30,7 @@ pub(super) fn schedule_json(labelled: &LabelledAnalysis<'_>, schedule: &Schedule
     });
     let delays_s = schedule.delays.as_ref().map(|delays| {
         let mut coefficients = labelled.coefficients(&delays.taus_s);
+        // The upper bound at each airspeed of the table; it too is interpolated over airspeed.
         coefficients["upper_s"] = delays.upper_s.parameters().into();
         coefficients
     });
@@ -38,6 +39,7 @@ pub(super) fn schedule_json(labelled: &LabelledAnalysis<'_>, schedule: &Schedule
         coefficients["bounds_s"] = json!(leads.bounds_s);
         coefficients
     });
+    // `cautions` are the texts alone, `caution_notes` the same with codes and values.
     let mut cautions = Vec::new();
     let mut caution_notes = Vec::new();
     for caution in &schedule.cautions {
@@ -71,6 +73,7 @@ pub(super) fn schedule_json(labelled: &LabelledAnalysis<'_>, schedule: &Schedule
         "cautions": cautions,
         "caution_notes": caution_notes,
     });
+    // Without scheduled delays, `delays_s` is null here, and absent from the table's rows.
     without_empty(members, &["second_variable", "tau_s", "caution_notes"])
 }
 

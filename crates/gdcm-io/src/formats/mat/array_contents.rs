@@ -44,7 +44,8 @@ const FIELD_NAME_MEMORY: u64 = 128;
 /// Reads arrays within a budget.
 ///
 /// In the methods, `contents` is the position in an array's data, and `path` leads to the value
-/// that is being read.
+/// that is being read. Errors arise without a variable name; the innermost method that knows the
+/// path adds it ([`ValuePath::locate`]), and the outer ones leave it.
 #[derive(Clone, Copy)]
 pub(super) struct ArrayReader<'a> {
     pub(super) budget: &'a ReadingBudget<'a>,
@@ -59,7 +60,8 @@ pub(super) enum Objects {
 }
 
 impl ArrayReader<'_> {
-    /// Reads the next array within another array; errors contain `path`.
+    /// Reads the next array within another array; errors contain `path`, or the path of a value
+    /// inside it.
     pub(super) fn read_nested_value(
         &self,
         contents: &mut Cursor<'_>,
@@ -95,7 +97,8 @@ impl ArrayReader<'_> {
         Ok(value)
     }
 
-    /// Reads an array's value, after its header; errors contain `path`.
+    /// Reads an array's value, after its header; errors contain `path`, or the path of a value
+    /// inside it.
     pub(super) fn read_value(
         &self,
         header: &ArrayHeader,
@@ -172,6 +175,7 @@ impl ArrayReader<'_> {
         } else {
             None
         };
+        // The entries' column indices.
         self.budget.take(stored as u64, 8, "")?;
         let columns = CompressedColumns {
             shape: [height, width],

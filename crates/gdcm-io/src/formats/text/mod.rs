@@ -12,7 +12,7 @@
 //! ```
 //!
 //! The importers in this file read only MATLAB statements; they return any other text as
-//! `Contents::Text`, for which `import` calls the other readers.
+//! `Contents::Text`, for which the module `crate::import` calls the other readers.
 
 mod cell_number;
 mod clock_time;
@@ -69,7 +69,7 @@ pub(crate) const MATLAB_STATEMENTS: Importer = Importer {
     endings: &["m"],
     recognises: |bytes, ending| {
         if ending == "m" {
-            // A file with this ending may also hold only numbers, which are read as a text.
+            // A file with this ending may also hold only numbers: `TEXT` then takes it.
             !begins_with_numbers(bytes)
         } else {
             TEXT.endings.contains(&ending) && begins_with_statement(bytes)
@@ -92,6 +92,7 @@ pub(crate) const MATLAB_STATEMENTS: Importer = Importer {
 pub(crate) const TEXT: Importer = Importer {
     name: "a text",
     endings: &["csv", "txt", "tsv", "dat", "asc", "prn", "log", "out"],
+    // Tried last: takes every file that no other importer recognises, whatever its ending.
     recognises: |_, _| true,
     read: |bytes, path, budget| {
         decode(bytes, budget)

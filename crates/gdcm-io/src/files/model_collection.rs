@@ -230,8 +230,8 @@ pub(crate) fn bare_draft(name: String, origin: Origin) -> ModelDraft {
 
 /// Converts the model at `index` (from 0), which is part of its variable name. Its origin follows
 /// from its role; else it is identified if it has a method or an order; else unknown
-/// (`Perturbed`). Returns `None` if neither the matrices nor a response give its dimensions, or if
-/// a list of channel names or units does not fit them.
+/// (`Perturbed`). Returns `None` if neither the matrices nor a response give its dimensions, if a
+/// list of channel names or units does not fit them, or if the model is both a run and a rerun.
 fn found_model(mut text: ModelText, index: usize) -> Option<FoundModel> {
     let origin = match text.origin() {
         Some(origin) => origin,
@@ -257,7 +257,14 @@ fn found_model(mut text: ModelText, index: usize) -> Option<FoundModel> {
         ..Facts::default()
     };
     let mut notes = Limited::entries(text.notes.take());
-    let mut draft = text.into_draft(origin);
+    let moved = match origin {
+        Origin::Identified { .. } => None,
+        Origin::Nominal { .. } | Origin::Perturbed { .. } => text.moved_parameters().ok()?,
+    };
+    let mut draft = ModelDraft {
+        moved,
+        ..text.into_draft(origin)
+    };
     let source = draft.source.get_or_insert_with(Provenance::default);
     source.variable = Some(format!("models{{{}}}", index + 1));
     if notes.is_empty() {
@@ -312,7 +319,9 @@ mod tests {
             "physics_models": [
                 {"name": "nominal", "role": "nominal", "A": [[-1.0]], "B": [[1.0]], "C": [[1.0]], "D": [[0.0]]},
                 {"name": "roll+5", "role": "perturbed", "perturbation": {"roll_deg": 5.0}, "states": ["p"],
-                 "A": [[-2.0]], "B": [[1.0]], "C": [[1.0]], "D": [[0.0]], "input_delays_s": [0.02]}],
+                 "A": [[-2.0]], "B": [[1.0]], "C": [[1.0]], "D": [[0.0]], "input_delays_s": [0.02]},
+                {"name": "inertia run", "parameter": {"name": "Ixx", "delta": 0.1},
+                 "A": [[-3.0]], "B": [[1.0]], "C": [[1.0]], "D": [[0.0]]}],
             "identified_models": [{"name": "measured", "method": "CIFER", "source": {"note": "flight 12"},
                 "frequency_response": {"omega_rad_s": [0.5, 1.0, 2.0], "re": [[[1.0, 0.9, 0.5]]], "im": [[[0.0, -0.1, -0.4]]],
                     "coherence": [[[0.9, 0.8, 0.7]]], "valid_band_rad_s": [[[0.5, 1.5]]], "averages": 12.0,
@@ -357,6 +366,7 @@ mod tests {
             let text = |model| serde_json::to_string(&without_source(model)).unwrap();
             assert_eq!(text(before), text(again));
             assert_eq!(before.draft.origin, again.draft.origin);
+            assert_eq!(before.draft.moved, again.draft.moved);
         }
         assert_eq!(
             again.models[2]

@@ -223,7 +223,9 @@ fn model_drafts(
             BundleKind::Identified => model.identified_origin(),
         };
         let moved = match kind {
-            BundleKind::Physics => model.moved_parameters(&place)?,
+            BundleKind::Physics => model
+                .moved_parameters()
+                .map_err(|error| ContentError::new(place.clone(), DraftFault::from(error)))?,
             BundleKind::Identified => None,
         };
         drafts.push(ModelDraft {

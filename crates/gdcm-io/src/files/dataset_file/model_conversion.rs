@@ -59,20 +59,14 @@ impl ModelText {
     ///
     /// # Errors
     /// Fails if the model is both a run and a rerun.
-    pub(super) fn moved_parameters(
-        &self,
-        place: &Location,
-    ) -> Result<Option<MovedParameters>, ContentError> {
+    pub(crate) fn moved_parameters(&self) -> Result<Option<MovedParameters>, ParameterError> {
         match (&self.parameter, &self.parameters) {
             (None, None) => Ok(None),
             (Some(run), None) => Ok(Some(MovedParameters::Run(run.change()))),
             (None, Some(Limited(changes))) => Ok(Some(MovedParameters::Rerun(
                 changes.iter().map(ParameterChangeText::change).collect(),
             ))),
-            (Some(_), Some(_)) => {
-                let fault = DraftFault::from(ParameterError::RunAndRerun);
-                Err(ContentError::new(place.clone(), fault))
-            }
+            (Some(_), Some(_)) => Err(ParameterError::RunAndRerun),
         }
     }
 

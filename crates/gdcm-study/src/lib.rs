@@ -1,13 +1,15 @@
 //! The Gain-Delay Correction Method: an engineer's decisions and their results.
 //!
 //! **Question answered:** given these settings, rejections and constraints, what is the correction,
-//! and why?
+//! and why? A *correction* gives each input and output channel of the physics model a gain and, if
+//! the phase is corrected, a delay or a lead filter.
 //!
 //! A [`Study`] contains a dataset and all decisions ([`decisions`]); an [`Engine`] computes its
 //! [`Analysis`] in [`stages`], each cached while its inputs stay the same. The [`results`] are
 //! typed facts with numbers; [`jobs`] are longer computations in parallel to the interactive
-//! analysis. Pieces of work run through an [`execution`]; large values are passed to jobs as
-//! [`shared`].
+//! analysis. An [`Execution`] runs the pieces of an analysis on one or several threads, reports
+//! progress and checks for cancellation. [`Shared`](shared::Shared) values are compared by
+//! identity, so that a job's unchanged input is recognised without reading it.
 //!
 //! Section numbers (M4, M13.2, ...) are those of the pages listed under
 //! [Sections M1 to M18](gdcm_method#sections-m1-to-m18).
@@ -35,6 +37,7 @@
 //! let (on_axis, band) = (PairTable::filled(1, 1, true), Band::new(0.5, 12.0)?);
 //! let header = DatasetHeader { name: "one axis".into(), description: String::new(), inputs, outputs, on_axis, band, parameters: Vec::new() };
 //! let study = Study::new(Dataset::new(header, vec![hover])?.into());
+//! // `Unobserved` ignores progress and never cancels.
 //! let analysis = Engine::default().analyze(&study, &Unobserved)?;
 //! let correction = &analysis.condition(ConditionId(1)).ok_or("no result")?.correction;
 //! assert!((correction.net_gain(Pair::new(0, 0)) - 1.2).abs() < 1e-9);

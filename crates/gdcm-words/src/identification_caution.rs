@@ -1,9 +1,9 @@
 //! Cautions about identified models in two short lines, for lists; the full texts are in gdcm-sysid.
 //!
-//! χ²/dof is the mean squared residual relative to the noise, 1 if the model explains the record;
-//! the partial coherence of an input is the share that it explains of what the other inputs leave
-//! of an output (M14.2). The *contrast* F says how far a record wants another model than the other
-//! records (M14.16).
+//! χ²/dof is the mean squared residual relative to the noise, 1 if the model explains all of the
+//! record but the noise; the partial coherence of an input is the share that it explains of what
+//! the other inputs leave of an output (M14.2). The *contrast* F says how far a record wants
+//! another model than the other records (M14.16).
 
 use gdcm_model::number_format::{counted, decimals, significant};
 use gdcm_model::simulation::Signal;
@@ -97,9 +97,12 @@ pub fn short_caution(caution: &IdentificationCaution) -> ShortCaution {
             format!("{input} → {output} off the measured points"),
             band_text(*band),
         ),
-        IdentificationCaution::OrderLimit { order, narrower } => ShortCaution::new(
+        IdentificationCaution::OrderLimit {
+            order,
+            narrower: [_, upper_end],
+        } => ShortCaution::new(
             format!("An order above {order} would fit better"),
-            format!("for example, narrow the band to {:.1} rad/s", narrower[1]),
+            format!("for example, narrow the band to {upper_end:.1} rad/s"),
         ),
         IdentificationCaution::HeldOut {
             raw, normalised, ..

@@ -190,7 +190,7 @@ impl AnalysedStudy {
     ///
     /// # Errors
     /// A file exists and is not to be replaced, or cannot be written.
-    pub fn write_results(&self, folder: &Path, is_replaced: bool) -> Result<(), CallError> {
+    pub fn write_results(&self, folder: &Path, may_replace: bool) -> Result<(), CallError> {
         let analysis = &self.analysed.analysis;
         let loaded = &self.data.loaded;
         let inputs = if self.data.is_stored {
@@ -201,7 +201,7 @@ impl AnalysedStudy {
         let chosen = analysis.study.dataset.ids().collect();
         called(|| {
             make_directory(folder)?;
-            let outputs = OutputSet::new(existing(is_replaced), inputs);
+            let outputs = OutputSet::new(existing(may_replace), inputs);
             write_results(analysis, &loaded.sha256, &chosen, folder, outputs)?;
             Ok(())
         })?;
@@ -254,8 +254,8 @@ impl DrawnFigure {
     ///
     /// # Errors
     /// The extension is unknown, the file exists and is not to be replaced, or cannot be written.
-    pub fn save(&self, path: &Path, is_replaced: bool) -> Result<(), CallError> {
-        let outputs = OutputSet::new(existing(is_replaced), Vec::new());
+    pub fn save(&self, path: &Path, may_replace: bool) -> Result<(), CallError> {
+        let outputs = OutputSet::new(existing(may_replace), Vec::new());
         called(|| Ok(write_figure(&self.figure, self.width, path, outputs)?))?;
         Ok(())
     }

@@ -123,8 +123,8 @@ impl IdentifiedRecords {
     ///
     /// # Errors
     /// The file exists and is not to be replaced, or cannot be written.
-    pub fn save(&self, path: &Path, is_replaced: bool) -> Result<(), CallError> {
-        let mut outputs = OutputSet::new(existing(is_replaced), Vec::new());
+    pub fn save(&self, path: &Path, may_replace: bool) -> Result<(), CallError> {
+        let mut outputs = OutputSet::new(existing(may_replace), Vec::new());
         called(|| {
             outputs.check(&[path])?;
             add_identified(&self.described.models(&self.found), path, &mut outputs)?;

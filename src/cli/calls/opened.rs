@@ -39,7 +39,8 @@ pub struct OpenedData {
 }
 
 impl OpenedData {
-    /// Returns an example that is part of the program.
+    /// Returns an example that is part of the program: the real aircraft if `is_real`, else the
+    /// simulated one.
     ///
     /// # Errors
     /// The example is damaged.
@@ -81,6 +82,7 @@ impl OpenedData {
     /// The text is not a valid dataset.
     pub fn from_json(text: &[u8], name: &str) -> Result<Called<Self>, CallError> {
         called(|| {
+            // The name takes the place of a path in messages.
             let origin = DatasetOrigin::File(PathBuf::from(name));
             let loaded = load_dataset_bytes(text, origin)?;
             report_file_cautions(&loaded);
@@ -97,7 +99,8 @@ impl OpenedData {
     }
 
     /// Takes a dataset that is not in a file; `name` is its source in messages. Its text is read
-    /// back, so that it has the checks and the checksum of a dataset file.
+    /// back, so that it has the checks and the checksum of a dataset file; cautions about the text
+    /// are not reported.
     pub(super) fn from_dataset(dataset: &Dataset, name: &str) -> Result<Self, Failure> {
         let text = dataset_text(dataset)?;
         let loaded = load_dataset_bytes(&text, DatasetOrigin::File(PathBuf::from(name)))?;
@@ -108,7 +111,8 @@ impl OpenedData {
         &self.loaded.dataset
     }
 
-    /// Returns the dataset's source: the path to its file, or a description in parentheses.
+    /// Returns the dataset's source: the path to its file, the name from [`Self::from_json`], or a
+    /// description in parentheses.
     pub fn source(&self) -> String {
         self.loaded.origin.to_string()
     }
@@ -125,8 +129,8 @@ impl OpenedData {
     ///
     /// # Errors
     /// The file exists and is not to be replaced, or cannot be written.
-    pub fn save_dataset(&self, path: &Path, is_replaced: bool) -> Result<(), CallError> {
-        let mut outputs = OutputSet::new(existing(is_replaced), Vec::new());
+    pub fn save_dataset(&self, path: &Path, may_replace: bool) -> Result<(), CallError> {
+        let mut outputs = OutputSet::new(existing(may_replace), Vec::new());
         called(|| {
             outputs.check(&[path])?;
             add_dataset(&self.loaded.dataset, path, &mut outputs)?;
@@ -161,23 +165,18 @@ impl OpenedData {
         let dataset = &self.loaded.dataset;
         let response = called(|| {
             let id = condition_of(dataset, condition)?;
-            let found = match dataset.condition(id) {
-                Some(condition) => condition.model(bundle, model),
-                None => None,
-            };
-            match found {
-                Some(found) => Ok(response_of(&found.dynamics, omega)),
-                None => {
-                    let names = match dataset.condition(id) {
-                        Some(condition) => model_names(condition, bundle),
-                        None => "none".to_owned(),
-                    };
-                    let reason = sanitized(&format!(
-                        "condition {id} has no {bundle} model \"{model}\"; {bundle} models: {names}"
-                    ));
-                    Err(Failure::coded_option("--model", "unknown-model", reason))
-                }
+            let condition = dataset.condition(id);
+            if let Some(found) = condition.and_then(|condition| condition.model(bundle, model)) {
+                return Ok(response_of(&found.dynamics, omega));
             }
+            let names = match condition {
+                Some(condition) => model_names(condition, bundle),
+                None => "none".to_owned(),
+            };
+            let reason = sanitized(&format!(
+                "condition {id} has no {bundle} model \"{model}\"; {bundle} models: {names}"
+            ));
+            Err(Failure::coded_option("--model", "unknown-model", reason))
         });
         Ok(response?.value)
     }
@@ -207,7 +206,7 @@ fn save(
 }
 
 /// Returns the path for the dataset that is written beside a study: "aw.dataset.json.gz" for
-/// "aw.gdcm-study.json".
+/// "aw.gdcm-study.json". The name is cut at its first dot.
 fn path_of_dataset(study: &Path) -> PathBuf {
     let name = study
         .file_name()

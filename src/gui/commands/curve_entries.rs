@@ -179,7 +179,7 @@ fn visibility_entries(state: &State) -> Vec<Entry> {
         Entry::new(
             "Remove frequency marks",
             "In every plot over frequency",
-            CurveCommand::UnpinCursors,
+            CurveCommand::RemoveFrequencyMarks,
         )
         .within(Menu::Curves, 3)
         .enabled(!(display.curves.pinned.is_empty() && display.curves.crossings.is_empty())),

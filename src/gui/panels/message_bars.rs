@@ -16,6 +16,9 @@ use crate::gui::state::notices::{FaultReport, MessageBar, RecoveryOffer};
 use crate::gui::widgets::elision::{elided, end_elided, text_width};
 use crate::gui::widgets::palette::{BODY_SIZE, body};
 
+/// Continues the name of a file that has changed.
+const CHANGED: &str = " has changed on disk";
+
 /// Button of a message bar.
 pub(super) struct BarButton {
     pub(super) text: &'static str,
@@ -64,16 +67,13 @@ pub(super) fn bar_line(ui: &Ui, bar: &MessageBar, room: f32) -> String {
     }
 }
 
-/// Continues the name of a file that has changed.
-const CHANGED: &str = " has changed on disk";
-
 fn line_with_name(ui: &Ui, name: &str, rest: &str, room: f32) -> String {
     let room = room - text_width(ui, rest, body());
     format!("{}{rest}", elided(ui, name, room, BODY_SIZE))
 }
 
 /// Continues the name of a reloaded file, for example with " reloaded: 3 differences, 1 decision
-/// lost".
+/// lost". A decision counts as lost if it does not apply to the reloaded dataset.
 fn difference_count(differences: &[Difference]) -> String {
     let count = counted(differences.len(), "difference");
     let lost = differences

@@ -157,7 +157,7 @@ fn visible_curves(curves: &[BodeCurve]) -> Cow<'_, [BodeCurve]> {
     Cow::Owned(visible.cloned().collect())
 }
 
-/// Returns chips for all roles, including hidden roles, and for the plot's current restrictions.
+/// Returns chips for all roles, including hidden roles, and the plot's command chips.
 fn plot_chips<'a>(scene: &BodeScene<'a>, view: &BodeView, palette: &Palette) -> Chips<'a> {
     let mut roles = role_chips(scene.curves, scene.hidden_roles, palette);
     let hovered = view.hovered.as_ref();
@@ -171,7 +171,7 @@ fn plot_chips<'a>(scene: &BodeScene<'a>, view: &BodeView, palette: &Palette) -> 
         plot: scene.quantity.label_suffix(),
         roles,
         shows_uncertainty: scene.shows_uncertainty,
-        restrictions: scene.restrictions,
+        command_chips: scene.command_chips,
         is_tight: false,
     }
 }

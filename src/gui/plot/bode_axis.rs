@@ -23,7 +23,8 @@ pub(super) enum BodeAxis {
 }
 
 impl BodeAxis {
-    /// Returns the accessible name, such as "Frequency axis, magnitude plot".
+    /// Returns the accessible name, such as "Frequency axis, magnitude plot"; `pane` is the one
+    /// beside which the axis is drawn.
     pub(super) fn name(self, scene: &BodeScene<'_>, pane: Pane) -> String {
         let kind = match self {
             Self::Frequency => "Frequency",
@@ -32,7 +33,7 @@ impl BodeAxis {
         format!("{kind} axis, {}", scene.quantity.name_in_sentence(pane))
     }
 
-    /// Returns the unit in brackets; empty without a unit.
+    /// Returns the unit in brackets after a space, to be appended to a name; empty without a unit.
     pub(super) fn unit(self, scene: &BodeScene<'_>) -> String {
         let symbol = match self {
             Self::Frequency => scene.unit.symbol(),

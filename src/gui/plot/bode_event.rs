@@ -27,8 +27,8 @@ pub enum BodeEvent {
     ActionChosen(CurveId, CurveAction),
     /// A box was drawn over these curves.
     Boxed(Vec<CurveId>),
-    /// A restriction's chip was clicked; the argument is its index in `BodeScene::restrictions`.
-    RestrictionClicked(usize),
+    /// A command chip was clicked; the argument is its index in `BodeScene::command_chips`.
+    CommandChipClicked(usize),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

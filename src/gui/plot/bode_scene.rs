@@ -13,7 +13,7 @@ use gdcm_plot::figure::axis::FrequencyUnit;
 use gdcm_plot::figure::bode::CoherenceCurve;
 pub use gdcm_plot::figure::responses::{BodeBand, ReferenceLine};
 
-use super::chips::Restriction;
+use super::chips::CommandChip;
 use super::curve_style::Role;
 use super::drawn_curves::{BodeCurve, CurveId};
 use super::quantity::BodeQuantity;
@@ -74,8 +74,8 @@ pub struct BodeScene<'a> {
     pub names_roles: bool,
     /// Roles whose curves are hidden; `None` if there are none.
     pub hidden_roles: Option<&'a BTreeSet<Role>>,
-    /// Restrictions on the displayed curves, each with a chip.
-    pub restrictions: &'a [Restriction],
+    /// Chips that carry out a command when clicked.
+    pub command_chips: &'a [CommandChip],
     /// Lower and upper end of the comparison band \[rad/s\].
     pub band: (f64, f64),
     pub unit: FrequencyUnit,

@@ -1,8 +1,9 @@
-//! Chips above a plot, which serve as its legend: a switch for each role present, and the plot's
-//! current restrictions.
+//! Chips above a plot, which serve as its legend: a switch for each role present, and chips that
+//! carry out a command.
 //!
-//! A role ([`Role`]) is the meaning of curves, such as nominal or corrected model. A restriction
-//! limits what the plot shows: "Only V+10kt ×" while one model is isolated.
+//! A role ([`Role`]) is the meaning of curves, such as nominal or corrected model. A command chip
+//! ends a state of the plot, such as "Only V+10kt ×" while one model is isolated, or concerns the
+//! selected models.
 
 use std::collections::BTreeSet;
 
@@ -103,9 +104,9 @@ fn shortened(label: &str) -> String {
     start
 }
 
-/// A restriction on the displayed curves, drawn as a chip; a click lifts it.
+/// A chip that carries out a command when clicked.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Restriction {
+pub struct CommandChip {
     /// Text, such as "Only V+10kt ×".
     pub text: String,
     /// Tooltip that says what a click does.
@@ -119,7 +120,7 @@ pub(super) struct Chips<'a> {
     pub(super) roles: Vec<RoleChip>,
     /// Whether uncertainty bands are drawn; `None` if there are none.
     pub(super) shows_uncertainty: Option<bool>,
-    pub(super) restrictions: &'a [Restriction],
+    pub(super) command_chips: &'a [CommandChip],
     /// Whether samples and texts are shortened for lack of room.
     pub(super) is_tight: bool,
 }
@@ -149,22 +150,22 @@ impl Chips<'_> {
         let switches = names
             .chain(uncertainty)
             .map(|name| chip_width(ui, name) + sample + SAMPLE_GAP);
-        let restrictions = self
-            .restrictions
+        let command_chips = self
+            .command_chips
             .iter()
-            .map(|restriction| chip_width(ui, &restriction.text));
-        switches.chain(restrictions).sum::<f32>() - GAP
+            .map(|chip| chip_width(ui, &chip.text));
+        switches.chain(command_chips).sum::<f32>() - GAP
     }
 
     /// Draws the chips in a single line, starting at the upper left corner of `area`:
     ///
     /// 1. the switches that fit, each with a sample of its curves;
     /// 2. for the others a chip that counts them, "+2", with a menu;
-    /// 3. the restrictions, which are always visible.
+    /// 3. the command chips, which are always visible.
     ///
-    /// Without roles and restrictions nothing is drawn, and the height is 0.
+    /// Without roles and command chips nothing is drawn, and the height is 0.
     pub(super) fn ui(&self, ui: &mut Ui, area: Rect, palette: &Palette) -> ChipsResponse {
-        if self.roles.is_empty() && self.restrictions.is_empty() {
+        if self.roles.is_empty() && self.command_chips.is_empty() {
             return ChipsResponse {
                 height: 0.0,
                 event: None,
@@ -196,16 +197,16 @@ impl Chips<'_> {
             event = self.rest_ui(ui, &mut row, rest, palette).or(event);
         }
         // Step 3.
-        for (index, restriction) in self.restrictions.iter().enumerate() {
+        for (index, chip) in self.command_chips.iter().enumerate() {
             let face = ChipFace {
-                text: &restriction.text,
-                name: &format!("{}{}", restriction.text, self.plot),
+                text: &chip.text,
+                name: &format!("{}{}", chip.text, self.plot),
                 sample: None,
                 is_lit: false,
             };
             let response = row.chip_ui(ui, &face, palette);
-            if hint_above(response, &restriction.hint).clicked() {
-                event = Some(BodeEvent::RestrictionClicked(index));
+            if hint_above(response, &chip.hint).clicked() {
+                event = Some(BodeEvent::CommandChipClicked(index));
             }
         }
         ChipsResponse {
@@ -238,16 +239,16 @@ impl Chips<'_> {
         switches
     }
 
-    /// Returns how many switches fit beside the restrictions; if not all do, also beside the chip
+    /// Returns how many switches fit beside the command chips; if not all do, also beside the chip
     /// that counts the others.
     fn fitting_count(&self, ui: &Ui, switches: &[Switch<'_>], width: f32) -> usize {
-        let restrictions_width: f32 = self
-            .restrictions
+        let command_chips_width: f32 = self
+            .command_chips
             .iter()
-            .map(|restriction| chip_width(ui, &restriction.text))
+            .map(|chip| chip_width(ui, &chip.text))
             .sum();
         // Each chip's width includes the gap behind it, which the last chip does not need.
-        let room = width - restrictions_width + GAP;
+        let room = width - command_chips_width + GAP;
         let sample_width = self.sample() + SAMPLE_GAP;
         let widths: Vec<f32> = switches
             .iter()

@@ -41,8 +41,8 @@ pub enum CurveCommand {
     /// Sets the names and frequencies \[rad/s\] from which the displayed response's bandwidth is
     /// computed.
     MarkCrossings(Vec<(&'static str, f64)>),
-    /// Removes the marked frequencies.
-    UnpinCursors,
+    /// Removes the marked frequencies and the crossings.
+    RemoveFrequencyMarks,
     /// Shows or hides the list of values at the cursor.
     ListValues(bool),
     /// Shows or hides the envelopes for maximum unnoticeable added dynamics in the Bode and error

@@ -205,7 +205,7 @@ fn ground_menu_ui(
     }
     let has_marks = !(scene.pinned.is_empty() && scene.crossings.is_empty());
     if has_marks && entry_ui(ui, "Remove marks", "All marked frequencies") {
-        chosen = Some(BodeEvent::Display(CurveCommand::UnpinCursors));
+        chosen = Some(BodeEvent::Display(CurveCommand::RemoveFrequencyMarks));
     }
     chosen
 }

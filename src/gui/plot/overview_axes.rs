@@ -1,5 +1,6 @@
 //! Axes of the overview: labels at the left of each row and below each column, and the grid lines of
-//! every cell at the labelled values.
+//! every cell at the labelled values. A cell holds a response's panes ([`Pane`]), magnitude and
+//! phase, one above the other; here `pane` is also the rectangle of one.
 
 use egui::{Align2, Painter, Rect, Stroke, pos2};
 
@@ -96,7 +97,8 @@ impl AxisRange {
         pane.bottom() - self.share(place) * pane.height()
     }
 
-    /// Returns the horizontal screen position of a value in a pane, limited to the pane.
+    /// Returns the horizontal screen position of a value in a pane, limited to the pane: the
+    /// comparison band and the cursor may exceed the range of the axis.
     pub(super) fn across_in(self, pane: Rect, place: f64) -> f32 {
         pane.left() + self.share(place).clamp(0.0, 1.0) * pane.width()
     }

@@ -2,7 +2,8 @@
 //!
 //! A *run* is a piece of a curve without gaps and in view. [`thinned`] omits the details of a run
 //! that are finer than a pixel; the functions here cut the runs out of the curves, and compute the
-//! size of a pixel in axis coordinates.
+//! size of a pixel in axis coordinates. [`thinned_between`] serves the charts, whose lines have no
+//! gaps.
 
 use egui_plot::{PlotBounds, PlotTransform};
 
@@ -34,7 +35,8 @@ pub(super) fn thinned_between(points: &[[f64; 2]], ends: [f64; 2], pixel: Pixel)
 }
 
 /// Splits points into sequences that are finite throughout and come within `margin` of `view`;
-/// `margin` is a share of its size.
+/// `margin` is a share of its size. A segment is kept if its bounding rectangle comes so close; a
+/// finite point between two gaps makes no segment and is dropped.
 ///
 /// A non-finite point makes debug builds of egui_plot panic, and a curve far outside the view costs
 /// time in proportion to its points and, if dashed, to its length on the screen.

@@ -132,7 +132,7 @@ impl CurveDisplay {
                     self.pinned.remove(0);
                 }
             }
-            CurveCommand::UnpinCursors => {
+            CurveCommand::RemoveFrequencyMarks => {
                 self.pinned.clear();
                 self.crossings.clear();
             }
@@ -162,7 +162,7 @@ mod tests {
             display.carry_out(CurveCommand::PinCursor(omega));
         }
         assert_eq!(display.pinned, [2.0, 3.0]);
-        display.carry_out(CurveCommand::UnpinCursors);
+        display.carry_out(CurveCommand::RemoveFrequencyMarks);
         assert!(display.pinned.is_empty());
     }
 

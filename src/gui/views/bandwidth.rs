@@ -160,7 +160,7 @@ pub(super) fn bode_commands(
     let mut commands: Vec<Command> = vec![
         SelectionCommand::SelectCondition(condition).into(),
         SelectionCommand::FocusPair(pair).into(),
-        CurveCommand::UnpinCursors.into(),
+        CurveCommand::RemoveFrequencyMarks.into(),
     ];
     if let Some(finding) = requirements.bandwidth_of(condition, pair, role) {
         let mut crossings = Vec::new();

@@ -1,5 +1,5 @@
-//! Chips above a plot over frequency: restrictions and marks in effect, each with the command that
-//! removes it, and commands for the models that the engineer has selected by a box.
+//! Command chips above a plot over frequency: isolation, marks and hidden models, each with the
+//! command that ends it, and commands for the models that the engineer has selected by a box.
 
 use std::collections::BTreeSet;
 
@@ -9,14 +9,14 @@ use gdcm_study::Edit;
 
 use crate::gui::commands::command::Command;
 use crate::gui::commands::selection::SelectionCommand;
-use crate::gui::plot::chips::Restriction;
+use crate::gui::plot::chips::CommandChip;
 use crate::gui::plot::curve_command::CurveCommand;
 use crate::gui::state::window_state::State;
 
 /// Chips, each with the command carried out by a click.
 #[derive(Default)]
 pub(super) struct CurveChips {
-    pub(super) chips: Vec<Restriction>,
+    pub(super) chips: Vec<CommandChip>,
     /// Commands, in the order of `chips`.
     pub(super) commands: Vec<Command>,
 }
@@ -33,7 +33,7 @@ impl CurveChips {
     }
 
     fn add(&mut self, text: String, hint: &str, command: impl Into<Command>) {
-        self.chips.push(Restriction {
+        self.chips.push(CommandChip {
             text,
             hint: hint.to_owned(),
         });
@@ -88,7 +88,8 @@ impl CurveChips {
     }
 
     /// Adds a chip for the marks at the crossings: the frequencies that define bandwidth and phase
-    /// delay, marked by *Show in Bode* in the requirements.
+    /// delay, marked by *Show in Bode* in the requirements. Its command also removes the other
+    /// marked frequencies.
     fn add_crossings(&mut self, state: &State) {
         let curves = &state.display.curves;
         if curves.crossings.is_empty() {
@@ -102,10 +103,12 @@ impl CurveChips {
         self.add(
             format!("{} {} ×", names.join(" · "), curves.unit.symbol()),
             "Removes the marks at these frequencies",
-            CurveCommand::UnpinCursors,
+            CurveCommand::RemoveFrequencyMarks,
         );
     }
 
+    /// Adds a chip that counts the hidden models of the displayed condition; its command shows
+    /// those of every condition.
     fn add_hidden_models(&mut self, state: &State) {
         let hidden = state
             .display

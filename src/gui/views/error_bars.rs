@@ -66,10 +66,12 @@ fn dim(color: &mut Color) {
     *color = color.tint(color.percent / 2);
 }
 
-/// Describes an error bar: "± 3.3 % (90 %): trim 78 %, identification 22 % of the variance"; then
-/// the remarks. The bar comes from substitutions: each replaces a representative by another model
-/// (M13.1). The number of those for which the value is undefined follows. Without a half-width,
-/// only the remarks.
+/// Describes an error bar: "± 3.3 % (90 %): trim 78 %, identification 22 % of the variance;
+/// undefined with 2 other models as representative", with the bar's remarks before "undefined".
+/// Without a half-width, only the remarks.
+///
+/// The bar comes from substitutions: each replaces a representative by another model of its bundle
+/// (M13.1), with which the value may be undefined.
 pub fn error_bar_words(bar: &Bar, scalar: Scalar, level: f64) -> String {
     let remarks = bar_remark_texts(bar).join(", ");
     let Some(half_width) = bar.half_width(level) else {
@@ -80,6 +82,7 @@ pub fn error_bar_words(bar: &Bar, scalar: Scalar, level: f64) -> String {
     } else {
         format!("± {:.1} %", 100.0 * half_width)
     };
+    // A bar with a half-width has spread, and therefore a trim share.
     let trim_percent = 100.0 * bar.trim_share().unwrap_or_default();
     let mut words = format!(
         "{interval} ({:.0} %): trim {trim_percent:.0} %, identification {:.0} % of the variance",

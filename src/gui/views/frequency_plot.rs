@@ -65,7 +65,7 @@ impl FrequencyPlot<'_> {
             hidden_roles: Some(&display.hidden_roles),
             raised: display.raised,
             names_roles: state.display.layout.is_wide && quantity.is_of_condition(),
-            restrictions: &chips.chips,
+            command_chips: &chips.chips,
             unit,
             stale: state.results.is_stale(ui.input(|input| input.time)),
             ..scene
@@ -77,7 +77,7 @@ impl FrequencyPlot<'_> {
                         commands.push(OutputCommand::CopyText(values_text(quantity, curve)).into());
                     }
                 }
-                BodeEvent::RestrictionClicked(index) => {
+                BodeEvent::CommandChipClicked(index) => {
                     commands.extend(chips.commands.get(index).cloned());
                 }
                 other => commands.extend(event_command(state, other)),
@@ -133,7 +133,7 @@ fn event_command(state: &State, event: BodeEvent) -> Option<Command> {
         | BodeEvent::ClickUndone(_)
         | BodeEvent::Isolated(_)
         | BodeEvent::RejectedBecause(..)
-        | BodeEvent::RestrictionClicked(_) => None,
+        | BodeEvent::CommandChipClicked(_) => None,
     }
 }
 

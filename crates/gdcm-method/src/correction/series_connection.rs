@@ -1,5 +1,6 @@
 //! Connects a model in series with its channels' delays or lead filters, by state-space matrices
-//! (M10).
+//! (M10). A delay has a finite order here: in continuous time its approximation (`pade`), in
+//! discrete time a chain of samples (`channel_model`).
 //!
 //! ```text
 //! first system (A1, B1, C1, D1), its outputs drive the second (A2, B2, C2, D2):

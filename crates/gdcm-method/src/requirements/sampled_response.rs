@@ -1,7 +1,11 @@
 //! A model's response sampled once on the search frequencies and interpolated between them, so that
 //! bandwidths under many corrections need no further model evaluation (M17.1). The *search
 //! frequencies* are those on which the crossings of phase and magnitude are searched, in and around
-//! the band.
+//! the band, in equal ratios.
+//!
+//! The reported bandwidths use the exact response. The interpolated one serves the models that only
+//! contribute to an interval, within about 1e-7 (docs/requirements.md), and the points inside the
+//! line for the phase delay.
 
 use nalgebra::Complex;
 

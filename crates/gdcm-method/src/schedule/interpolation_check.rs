@@ -33,6 +33,7 @@ impl Schedule {
     pub(super) fn find_cautions(&self, points: &[ScheduledPoint<'_>]) -> Vec<ScheduleCaution> {
         let mut cautions = Vec::new();
         let clusters = self.airspeeds.clusters.len();
+        // n airspeeds determine a polynomial of degree n - 1 at most.
         if let ScheduleKind::Polynomial { degree: asked } = self.settings.kind
             && asked >= clusters
         {

@@ -4,8 +4,10 @@ use serde::{Deserialize, Serialize};
 
 use super::coherence_error::Measurement;
 
-/// `C_epsilon^2` for windows that overlap by half (J. S. Bendat and A. G. Piersol, *Random Data*,
-/// 4th ed. 2010, chapter 9).
+/// `C_epsilon^2` for windows that overlap by half. The random error of a response, from its
+/// coherence, is proportional to `C_epsilon` ([`Measurement::deviation`]).
+///
+/// J. S. Bendat and A. G. Piersol, *Random Data*, 4th ed. 2010, chapter 9.
 const HALF_OVERLAP_FACTOR: f64 = 0.55;
 
 /// Settings for the error bars; no gain and no delay depends on them.
@@ -15,14 +17,16 @@ pub struct UncertaintySettings {
     pub level: f64,
     /// Maximum degrees of freedom that the identification part in a condition's error bar borrows
     /// from the other conditions; 0 uses the condition's own data only. With 4, Student's quantile
-    /// for three identified models is 1.9 instead of 2.9, so that the bars are a quarter narrower
-    /// (`docs/uncertainty.md`).
+    /// for three identified models is 1.9 instead of 2.9; simulated bars without a trim part are
+    /// then a quarter narrower (`docs/uncertainty.md`, measured coverage).
     pub prior_degrees: f64,
     /// Count of independent averages for measured responses whose files do not state it; `None`
     /// leaves their coherence unused.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub averages: Option<f64>,
-    /// Window length \[s\] for measured responses whose files do not state it.
+    /// Window length \[s\] for measured responses whose files do not state it. Errors at
+    /// frequencies farther apart than two steps of the window are independent, which reduces the
+    /// error of a median over frequency; without a window length it is not reduced.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub window_s: Option<f64>,
     /// Whether the windows for measured responses overlap by half: `C_epsilon` is then `sqrt(0.55)`
@@ -45,7 +49,7 @@ impl Default for UncertaintySettings {
 
 impl UncertaintySettings {
     /// Combines a measured response's own data with these defaults; `None` if the average count is
-    /// unknown or not positive.
+    /// unknown or not positive. A window length that is not positive counts as unknown.
     pub fn measurement(&self, averages: Option<f64>, window_s: Option<f64>) -> Option<Measurement> {
         let averages = averages
             .or(self.averages)

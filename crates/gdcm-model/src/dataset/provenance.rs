@@ -20,7 +20,7 @@ pub struct Provenance {
     /// Unused variables in the file; listed only in each file's first model.
     pub unused: Vec<String>,
     /// Sides (inputs, outputs) whose channels have no names in the file and were matched by
-    /// position.
+    /// position; a caution states them, not [`Self::words`].
     pub by_position: Vec<ChannelSide>,
 }
 

@@ -9,9 +9,11 @@ use crate::units::ratio_to_db;
 
 /// Lead filter order (numerator and denominator).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+// Read from `f64`, because a file may contain a whole number as `2.0`.
 #[serde(try_from = "f64", into = "usize")]
 pub enum LeadOrder {
-    /// `(1 + a s) / (1 + b s)`: its gain rises with `omega^2` within the comparison band.
+    /// `(1 + a s) / (1 + b s)`: the logarithm of its gain rises with `omega^2` while `a omega` is
+    /// small, hence already within the comparison band.
     First,
     /// Butterworth damping: nearly constant gain within the comparison band.
     #[default]

@@ -92,6 +92,7 @@ impl Role {
     }
 
     /// Returns an uncorrected model's role; `represents` states whether it represents its bundle.
+    /// Whether the model is rejected is for [`Self::shown`].
     pub fn of_model(kind: BundleKind, is_nominal: bool, represents: bool) -> Self {
         match (kind, is_nominal, represents) {
             (BundleKind::Physics, true, _) => Self::Nominal,
@@ -120,7 +121,8 @@ impl Role {
         }
     }
 
-    /// Returns the name as a single word, for commands.
+    /// Returns the name as a single word, for commands. "identified" means [`Self::Identified`],
+    /// whereas in the legend it names [`Self::IdentifiedRepresentative`].
     pub fn word(self) -> &'static str {
         match self {
             Self::Identified => "identified",

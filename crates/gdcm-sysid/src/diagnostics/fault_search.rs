@@ -4,7 +4,7 @@
 //! e residual of the record, J its Jacobian in the model's parameters theta, both whitened
 //!    (`local_system`);   G, g normal equations of all records
 //! V with V'GV = I, so that G^+ = VV'
-//! 1  for each possible fault the residual column d, the change of e with the size of the fault:
+//! 1  for each possible fault the column d, the change of e when a fault of size 1 is corrected:
 //!      all outputs late W jw Y,  an output late W e_o jw Y_o,
 //!      an input late -W H_j jw U_j,  a gain W e_o Y_o
 //!      (Y, U spectra of outputs and inputs, w frequency, W whitening factor, e_o unit vector of
@@ -29,7 +29,8 @@ use crate::options::Options;
 use crate::spectra::spectrum::Spectrum;
 
 /// A delay common to all outputs is preferred to another fault if it explains at least this share
-/// of the largest explained cost.
+/// of the largest explained cost; a smaller share names single channels less often. With a single
+/// output, its own delay explains the same.
 const AS_GOOD: f64 = 0.98;
 
 /// A fault's products with theta projected out (step 2).
@@ -128,7 +129,7 @@ impl RecordContrasts<'_> {
             if lines.record != record {
                 continue;
             }
-            let effect = residual_effect(fault, lines, spectrum, model);
+            let effect = effect_of_correction(fault, lines, spectrum, model);
             let column = lines.without_transient(model, &resolvents, &effect)?;
             with_residual += column.dotc(&part.residual).re;
             square += column.norm_squared();
@@ -148,8 +149,9 @@ impl RecordContrasts<'_> {
     }
 }
 
-/// Returns how a unit fault changes the whitened residual (step 1), outputs x lines.
-fn residual_effect(
+/// Returns the change of the whitened residual when a fault of size 1 is corrected (step 1),
+/// outputs x lines.
+fn effect_of_correction(
     fault: &RecordFault,
     lines: &SpectralLines,
     spectrum: &Spectrum,

@@ -32,8 +32,8 @@ pub struct SweepAdvice {
 
 impl FlightPlanner<'_> {
     /// Returns advice for each input with responses among `pairs`; they are identified once their
-    /// mid-band 95 % interval is at most `limit_db` on each side. `None` if a prediction fails
-    /// ([`Self::sweep_plan`]).
+    /// mid-band 95 % interval is at most `limit_db` on each side (1.96 times 3 dB for the limit of
+    /// 3 dB on the standard deviation). `None` if a prediction fails ([`Self::sweep_plan`]).
     #[must_use]
     pub fn advice(&self, pairs: &[Pair], limit_db: f64) -> Option<Vec<SweepAdvice>> {
         let mut advice = Vec::new();
@@ -54,6 +54,7 @@ impl FlightPlanner<'_> {
         limit_db: f64,
     ) -> Option<SweepAdvice> {
         let information = self.sweep_information(&standard.sweep)?;
+        // By bisection: an interval does not widen with more sweeps.
         let least = least_number(MOST_ADVISED, |repeats| {
             let widest = self.widest(&information, repeats, pairs)?;
             Some(widest.then.half_db <= limit_db)
@@ -80,7 +81,7 @@ impl FlightPlanner<'_> {
     }
 
     /// Returns the response with the widest interval after `repeats` sweeps; `None` without
-    /// responses.
+    /// responses, or if a prediction fails.
     fn widest(
         &self,
         information: &SweepInformation,

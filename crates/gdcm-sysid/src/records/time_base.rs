@@ -23,10 +23,11 @@ pub enum TimeBase {
     Topics,
 }
 
-/// How likely a column is the time column; the smallest rank is the most likely.
+/// How likely a column is the time column; the smallest rank is the most likely. The fields are
+/// compared in their order.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
 struct TimeRank {
-    /// Whether the column mostly repeats or decreases, so that at most its name suggests a time.
+    /// Whether the column mostly repeats or decreases; only its name can then suggest a time.
     mostly_falls: bool,
     by_name: u8,
     column: usize,

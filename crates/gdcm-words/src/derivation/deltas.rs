@@ -3,8 +3,9 @@
 //! phase of `H_sim` less that of `H_ref`. Each is a [`Derivation`]: the equation, the same with
 //! numbers, and what the result rests on, as texts.
 //!
-//! With lead filters `L_o` and `L_i`, `H_sim` is *compensated* by them before G is found (M15.5).
-//! The *band delay* is the slope of a straight line through Δφ over the band (M15.2).
+//! With lead filters `L_o` and `L_i`, `H_sim` is *compensated* by them before G is found; D comes
+//! from `H_sim` itself, because the filters follow from D (M15.5). The *band delay* is the slope of
+//! the straight line through the origin that fits Δφ over the band (M15.2).
 
 use gdcm_method::correction::delta::GainSource;
 use gdcm_method::fidelity::Mismatch;
@@ -15,7 +16,7 @@ use gdcm_model::units::{db_to_ratio, s_to_ms};
 use super::sample_words::{median_words, range_words};
 use super::{Context, Derivation};
 
-/// Returns `|H_ref| / |H_sim|` at each frequency.
+/// Returns `|H_ref| / |H_sim|` at each frequency: the inverse of the mismatch in magnitude.
 pub(super) fn gain_ratios(mismatch: &Mismatch) -> Vec<f64> {
     mismatch
         .magnitude_db
@@ -132,7 +133,7 @@ pub(super) fn delay(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
     })
 }
 
-/// Writes the missing phase's least-squares slope over frequency as a quotient.
+/// Writes the least-squares slope of Δφ over frequency as a quotient.
 fn band_delay_words(context: &Context<'_>, mismatch: &Mismatch) -> String {
     let omega = mismatch.omega(context.omega());
     let phase = mismatch.phase_difference(context.omega());

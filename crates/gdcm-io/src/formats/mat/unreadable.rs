@@ -23,6 +23,7 @@ pub(super) fn unreadable(class: &str, fault: ObjectFault, variable: &str) -> Val
 /// Source: the reference manuals of MATLAB, the Control System Toolbox and the System
 /// Identification Toolbox.
 fn export_command(class: &str, variable: &str) -> String {
+    // Empty if the file gives the value no name.
     let sys = if variable.is_empty() { "x" } else { variable };
     let (assignment, names) = match class {
         "ss" => (
@@ -60,6 +61,7 @@ fn export_command(class: &str, variable: &str) -> String {
             "names data",
         ),
         "function_handle" => (format!("text = func2str({sys});"), "text"),
+        // Any other class: its properties as fields.
         _ => (format!("data = struct({sys});"), "data"),
     };
     format!("{assignment} save out.mat {names}")

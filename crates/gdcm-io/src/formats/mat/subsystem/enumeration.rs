@@ -15,9 +15,9 @@ use crate::formats::variables::{Object, StructArray, Value};
 /// Field by which a record with enumeration members is recognised.
 const TAG: &str = "EnumerationInstanceTag";
 /// Estimated memory of a member without its name \[bytes\].
-const VALUE: u64 = 256;
-/// Property that holds the member name.
-const MEMBER: &str = "Name";
+const BYTES_PER_MEMBER: u64 = 256;
+/// Property of the converted object that holds the member name.
+const MEMBER_NAME: &str = "Name";
 
 /// Enumeration members, given by their names.
 pub(super) struct EnumerationMembers<'d> {
@@ -59,7 +59,7 @@ impl<'d> EnumerationMembers<'d> {
     pub(super) fn memory(&self) -> u64 {
         self.names
             .iter()
-            .map(|name| name.len() as u64 + VALUE)
+            .map(|name| name.len() as u64 + BYTES_PER_MEMBER)
             .sum()
     }
 
@@ -68,7 +68,7 @@ impl<'d> EnumerationMembers<'d> {
         let names = self.names.into_iter().map(Value::text).collect();
         let records = StructArray {
             shape: self.shape,
-            fields: vec![(MEMBER.to_owned(), names)],
+            fields: vec![(MEMBER_NAME.to_owned(), names)],
         };
         Value::Object(Object {
             class: self.class.to_owned(),

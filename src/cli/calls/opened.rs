@@ -205,14 +205,17 @@ fn save(
     Ok(())
 }
 
-/// Returns the path for the dataset that is written beside a study: "aw.dataset.json.gz" for
-/// "aw.gdcm-study.json". The name is cut at its first dot.
+/// Returns the path for the dataset that is written beside a study: "aw 1.2.dataset.json.gz" for
+/// "aw 1.2.gdcm-study.json".
 fn path_of_dataset(study: &Path) -> PathBuf {
-    let name = study
-        .file_name()
-        .map(|name| name.to_string_lossy().into_owned())
-        .unwrap_or_default();
-    let stem = name.split('.').next().unwrap_or_default();
+    let name = match study.file_name() {
+        Some(name) => name.to_string_lossy().into_owned(),
+        None => String::new(),
+    };
+    let stem = [".gdcm-study.json", ".json"]
+        .iter()
+        .find_map(|ending| name.strip_suffix(ending))
+        .unwrap_or(&name);
     study.with_file_name(format!("{stem}.dataset.json.gz"))
 }
 

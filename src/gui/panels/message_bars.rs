@@ -4,7 +4,7 @@
 use egui::Ui;
 
 use gdcm_model::number_format::counted;
-use gdcm_study::decisions::dataset_differences::Difference;
+use gdcm_study::decisions::dataset_differences::{Difference, NotApplied};
 use gdcm_words::dataset_differences::dataset_difference_text;
 
 use crate::gui::commands::command::Command;
@@ -73,17 +73,25 @@ fn line_with_name(ui: &Ui, name: &str, rest: &str, room: f32) -> String {
 }
 
 /// Continues the name of a reloaded file, for example with " reloaded: 3 differences, 1 decision
-/// lost". A decision counts as lost if it does not apply to the reloaded dataset.
+/// lost". A decision is lost if it does not apply to the reloaded dataset, unless the study keeps it
+/// for another one.
 fn difference_count(differences: &[Difference]) -> String {
     let count = counted(differences.len(), "difference");
     let lost = differences
         .iter()
-        .filter(|difference| matches!(difference, Difference::NotApplied { .. }))
+        .filter(|difference| is_lost_decision(difference))
         .count();
     if lost == 0 {
         format!(" reloaded: {count}")
     } else {
         format!(" reloaded: {count}, {} lost", counted(lost, "decision"))
+    }
+}
+
+fn is_lost_decision(difference: &Difference) -> bool {
+    match difference {
+        Difference::NotApplied { why, .. } => *why != NotApplied::KeptForAnotherDataset,
+        _ => false,
     }
 }
 

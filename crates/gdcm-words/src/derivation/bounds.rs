@@ -12,26 +12,51 @@ use super::deltas::{delays_ms, gain_ratios};
 use super::sample_words::range_words;
 use super::{Context, Derivation};
 
-/// Collects the mismatches in the on-axis responses, or in all responses if none is on-axis or no
-/// on-axis response has a mismatch.
-fn pooled<'a>(
-    context: &Context<'a>,
-    mismatch: impl Fn(Pair) -> Option<&'a Mismatch>,
-) -> Vec<&'a Mismatch> {
-    let measuring = context.analysis.study.dataset.measuring_pairs();
-    let marked: Vec<&Mismatch> = measuring.marked().filter_map(&mismatch).collect();
-    if marked.is_empty() {
-        measuring.pairs().filter_map(&mismatch).collect()
-    } else {
-        marked
-    }
+/// Responses whose mismatches give the bounds: the on-axis responses, or all responses if none is
+/// on-axis or no on-axis response has a mismatch.
+struct Pool<'a> {
+    pairs: Vec<Pair>,
+    mismatches: Vec<&'a Mismatch>,
 }
 
-fn pool_rests_on(context: &Context<'_>) -> Vec<String> {
-    let mut rests_on = context.models();
-    rests_on.push(context.band());
-    rests_on.push(context.measured_responses());
-    rests_on
+impl<'a> Pool<'a> {
+    fn new(context: &Context<'a>, mismatch: impl Fn(Pair) -> Option<&'a Mismatch>) -> Self {
+        let measuring = context.analysis.study.dataset.measuring_pairs();
+        let on_axis = Self::of_pairs(measuring.marked(), &mismatch);
+        if on_axis.mismatches.is_empty() {
+            Self::of_pairs(measuring.pairs(), &mismatch)
+        } else {
+            on_axis
+        }
+    }
+
+    fn of_pairs(
+        pairs: impl Iterator<Item = Pair>,
+        mismatch: impl Fn(Pair) -> Option<&'a Mismatch>,
+    ) -> Self {
+        let mut pool = Self {
+            pairs: Vec::new(),
+            mismatches: Vec::new(),
+        };
+        for pair in pairs {
+            if let Some(found) = mismatch(pair) {
+                pool.pairs.push(pair);
+                pool.mismatches.push(found);
+            }
+        }
+        pool
+    }
+
+    /// Describes the models, the band and the responses.
+    fn rests_on(&self, context: &Context<'_>) -> Vec<String> {
+        let mut rests_on = context.models();
+        rests_on.push(context.band());
+        rests_on.push(format!(
+            "responses {}",
+            context.pairs(self.pairs.iter().copied())
+        ));
+        rests_on
+    }
 }
 
 /// Formats a quantile in percent, without floating-point noise.
@@ -51,19 +76,21 @@ pub(super) fn gain_bounds(context: &Context<'_>) -> Derivation {
         )
     } else {
         let quantile = context.settings().quantile;
-        let pool: Vec<f64> = pooled(context, |pair| context.compensated_mismatch(pair))
-            .into_iter()
-            .flat_map(gain_ratios)
+        let pool = Pool::new(context, |pair| context.compensated_mismatch(pair));
+        let ratios: Vec<f64> = pool
+            .mismatches
+            .iter()
+            .flat_map(|mismatch| gain_ratios(mismatch))
             .collect();
-        let pool = range_words(&pool);
+        let sample = range_words(&ratios);
         let low = percent(quantile);
         let high = percent(1.0 - quantile);
         (
             vec![
-                format!("LB = min(1, {low} % quantile of {pool}) = {lower}"),
-                format!("UB = max(1, {high} % quantile of {pool}) = {upper}"),
+                format!("LB = min(1, {low} % quantile of {sample}) = {lower}"),
+                format!("UB = max(1, {high} % quantile of {sample}) = {upper}"),
             ],
-            pool_rests_on(context),
+            pool.rests_on(context),
         )
     };
     Derivation {
@@ -84,17 +111,19 @@ pub(super) fn delay_bound(context: &Context<'_>) -> Derivation {
     let (step, rests_on) = if context.settings().delay_upper_s.is_some() {
         (format!("UB = {upper} ms"), vec!["set by hand".to_owned()])
     } else {
-        let pool: Vec<f64> = pooled(context, |pair| context.mismatch(pair))
-            .into_iter()
+        let pool = Pool::new(context, |pair| context.mismatch(pair));
+        let delays_ms: Vec<f64> = pool
+            .mismatches
+            .iter()
             .flat_map(|mismatch| delays_ms(mismatch, context.omega()))
             .collect();
         let high = percent(1.0 - context.settings().quantile);
         (
             format!(
                 "UB = max(0, {high} % quantile of {}) = {upper} ms",
-                range_words(&pool)
+                range_words(&delays_ms)
             ),
-            pool_rests_on(context),
+            pool.rests_on(context),
         )
     };
     Derivation {

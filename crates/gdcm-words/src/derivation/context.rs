@@ -111,8 +111,7 @@ impl<'a> Context<'a> {
         }
     }
 
-    /// Lists the responses from which the models' distances (M5) and the bounds on the channels'
-    /// gains and delays (M7) are computed.
+    /// Lists the responses from which the models' distances (M5) are computed.
     pub(super) fn measured_responses(&self) -> String {
         let measuring = self.analysis.study.dataset.measuring_pairs();
         format!("responses {}", self.pairs(measuring.marked()))

@@ -116,7 +116,7 @@ pub(super) fn delay(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
             "M6, eq. (9)",
         )
     };
-    if !uses_band_delay && mismatch.leaves_half_a_turn() {
+    if mismatch.leaves_half_a_turn() {
         rests_on.push(
             "at each frequency, the phase is taken on the turn nearest to the best-fitting pure \
             delay (M6b)"

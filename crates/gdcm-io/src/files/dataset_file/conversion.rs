@@ -3,6 +3,7 @@
 
 use gdcm_model::dataset::condition::{ConditionRecord, FlightState, RecordKind};
 use gdcm_model::dataset::dataset_draft::{ConditionDraft, DatasetDraft, ModelDraft};
+use gdcm_model::dataset::draft_fault::DraftFault;
 use gdcm_model::dataset::location::Location;
 use gdcm_model::dataset::{BundleKind, Channel, Condition, ConditionId, Dataset, PhysicsParameter};
 

@@ -9,7 +9,6 @@ use nalgebra::DMatrix;
 
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::dataset::dataset_draft::{BandsDraft, ModelDraft, ResponseArray, ResponseDraft};
-use gdcm_model::dataset::draft_fault::DraftFault;
 use gdcm_model::dataset::location::Location;
 use gdcm_model::dataset::measured_response::Estimate;
 use gdcm_model::dataset::model::{Origin, Provenance};

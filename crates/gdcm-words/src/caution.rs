@@ -87,7 +87,7 @@ pub fn caution_text(caution: &Caution, pair_name: impl Fn(Pair) -> String) -> St
             left_out,
             points,
         } => format!(
-            "weighted by coherence: J, G and D of {}; frequencies left out, of {points}: {} \
+            "weighted by coherence: J, G and D of {}; left out of the {points} frequencies: {} \
             (coherence below {}, or outside the valid band)",
             counted(*weighed, "response"),
             left_out_words(left_out, &pair_name),
@@ -126,11 +126,17 @@ pub fn caution_text(caution: &Caution, pair_name: impl Fn(Pair) -> String) -> St
         }
         Caution::ParametersBend(bends) => {
             let names: Vec<&str> = bends.iter().map(|bend| bend.name.as_str()).collect();
-            format!(
-                "the effect of {} is not linear up to the applied value; add a physics model \
-                linearised at that value",
-                names.join(", ")
-            )
+            match names.as_slice() {
+                [only] => format!(
+                    "the effect of {only} is not linear up to the applied value; add a physics \
+                    model linearised at that value"
+                ),
+                names => format!(
+                    "the effects of {} are not linear up to the applied values; for each, add a \
+                    physics model linearised at its applied value",
+                    names.join(", ")
+                ),
+            }
         }
         Caution::UnusualGain { pair, gain } => format!(
             "{}: delta gain G = {} is outside the usual range {} to {}; if it is not physically \
@@ -163,7 +169,7 @@ fn lacking_reason(
         None => "zero somewhere in the band".to_owned(),
         Some(why) if zero.is_empty() => not_finite_text(why),
         Some(why) => format!(
-            "{} zero at every frequency that has a value; for the others, {}",
+            "zero at every frequency that has a value: {}; for the others, {}",
             names(zero, pair_name),
             not_finite_text(why)
         ),

@@ -39,8 +39,9 @@ pub fn doubt_text(doubt: &ConventionDoubt, dataset: &Dataset) -> String {
         Convention::Sign => {
             let differ = if is_single { "differs" } else { "differ" };
             format!(
-                "{names} {differ} by half a turn at all frequencies{alike} {place}: {channel} of \
-                the identified models has the opposite sign. Reverse it?"
+                "{names} of the identified models {differ} from the physics model by about half a \
+                turn at most frequencies{alike} {place}: {channel} of the identified models has the \
+                opposite sign. Reverse it?"
             )
         }
         Convention::Factor(factor) => {
@@ -109,7 +110,7 @@ mod tests {
         };
         let words = doubt_text(&doubt, &dataset);
         assert!(
-            words.starts_with("COL → NZ differs by half a turn"),
+            words.starts_with("COL → NZ of the identified models differs from the physics model"),
             "{words}"
         );
         assert!(

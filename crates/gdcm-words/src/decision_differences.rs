@@ -146,7 +146,7 @@ fn parameter_differences(before: &Study, after: &Study) -> Vec<DecisionDifferenc
     if old.gain_sd != new.gain_sd || old.delay_sd_s != new.delay_sd_s || old.points != new.points {
         let [before, after] = [old, new].map(|settings| {
             format!(
-                "prior of gains ± {}, prior of delays ± {} ms, {} frequencies",
+                "prior standard deviation of gains {}, of delays {} ms; {} frequencies",
                 number(settings.gain_sd),
                 number(1e3 * settings.delay_sd_s),
                 settings.points

@@ -19,8 +19,8 @@ pub fn file_summary_text(summary: &FileSummary) -> String {
     match summary {
         FileSummary::Results {
             has_error_bars: true,
-        } => "everything, with error bars".to_owned(),
-        FileSummary::Results { .. } => "everything, without error bars".to_owned(),
+        } => "all results, with error bars".to_owned(),
+        FileSummary::Results { .. } => "all results, without error bars".to_owned(),
         FileSummary::Rows { rows } => counted(*rows, "row"),
         FileSummary::Function {
             channels,
@@ -118,7 +118,7 @@ pub fn export_note_title(note: &ExportNote, dataset: &Dataset) -> String {
             let inputs = largest(&price.gains_db.inputs);
             let outputs = largest(&price.gains_db.outputs);
             format!(
-                "{}: leads add up to {} dB",
+                "{}: leads add at most {} dB",
                 capitalized(&words),
                 telling(inputs + outputs, 0)
             )

@@ -102,13 +102,13 @@ pub fn short_caution(caution: &IdentificationCaution) -> ShortCaution {
             narrower: [_, upper_end],
         } => ShortCaution::new(
             format!("An order above {order} would fit better"),
-            format!("for example, narrow the band to {upper_end:.1} rad/s"),
+            format!("narrow the band, for example to {upper_end:.1} rad/s"),
         ),
         IdentificationCaution::HeldOut {
             raw, normalised, ..
         } => ShortCaution::new(
             "Held-out records not predicted",
-            format!("χ²/dof {raw:.1}; {normalised:.1} with the model free within its uncertainty"),
+            format!("χ²/dof {raw:.1}; {normalised:.1} allowing for the uncertainty of the model"),
         ),
         IdentificationCaution::Reweighed(ratio) => ShortCaution::new(
             "Records weighted by their noise",
@@ -210,7 +210,7 @@ fn short_record_caution(caution: &RecordCaution) -> ShortCaution {
         ),
         RecordCaution::Coarse { signal, step_sd } => ShortCaution::new(
             format!("{signal} in coarse steps"),
-            format!("{step_sd:.1} standard deviations"),
+            format!("steps of {step_sd:.1} standard deviations"),
         ),
         RecordCaution::Copy { copy, of } => ShortCaution::new(
             format!("{copy} is a copy of {of}"),

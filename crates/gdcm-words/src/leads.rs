@@ -144,7 +144,7 @@ pub fn lead_limit_words(result: &ConditionAnalysis) -> Option<String> {
 /// above the band".
 pub fn servo_words(filter: LeadFilter) -> String {
     format!(
-        "as if a servo of {} rad/s were replaced by one of {} rad/s; {} dB above the band",
+        "as if a servo of {} rad/s were replaced by one of {} rad/s; {} dB far above the band",
         telling(filter.zero_rad_s(), 0),
         telling(filter.lag_rad_s(), 0),
         signed(filter.gain_at_infinity_db(), 1)

@@ -325,9 +325,9 @@ pub fn met_text(count: GridCount) -> String {
 }
 
 /// Counts the cells that the physics model meets alone, and those not determined, if any, to follow
-/// [`met_text`]: "physics alone 73; 14 not determined".
+/// [`met_text`]: "73 without correction; 14 not determined".
 pub fn count_details_text(count: GridCount) -> String {
-    let physics = format!("physics alone {}", count.physics_met);
+    let physics = format!("{} without correction", count.physics_met);
     match count.not_determined {
         0 => physics,
         others => format!("{physics}; {others} not determined"),
@@ -347,8 +347,8 @@ pub fn grid_table(grid: &RequirementGrid, names: RequirementNames<'_>) -> Table 
     );
     let count = grid.count();
     let title = format!(
-        "{} models compared with identified models and held-out records: {}, {}; {OUTSIDE_MARK} \
-        marks values outside their limits",
+        "{} models compared with identified models and held-out records; requirements: {}, {}; \
+        {OUTSIDE_MARK} marks values outside their limits",
         capitalized(grid.role.name()),
         met_text(count),
         count_details_text(count)

@@ -215,10 +215,10 @@ pub fn summary_table(requirements: &Requirements, histories: Option<&TimeHistori
         "condition",
         "airspeed [kt]",
         "model",
-        "J on-axis",
-        "J of all",
-        "in MUAD on-axis [%]",
-        "in MUAD of all [%]",
+        "J, on-axis",
+        "J, all responses",
+        "in MUAD, on-axis [%]",
+        "in MUAD, all responses [%]",
     ]
     .map(str::to_owned)
     .to_vec();

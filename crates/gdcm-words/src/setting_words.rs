@@ -137,7 +137,7 @@ static SETTING_WORDS: [SettingWords; 30] = [
         key: "band_rad_s",
         caption: "Band",
         label: "Band",
-        help: "Comparison band [rad/s]; in the window, its limits can also be dragged in the plot",
+        help: "Comparison band; in the window, its limits can also be dragged in the plot",
         ends: ["Band from", "Band to"],
         ..NO_WORDS
     },
@@ -177,7 +177,8 @@ static SETTING_WORDS: [SettingWords; 30] = [
         key: "agreement_db",
         caption: "Loop tolerance",
         label: "Loop tolerance",
-        help: "Maximum mismatch around a loop of held gains up to which they count as consistent",
+        help: "Largest mismatch at which held gains that form a loop of responses still count as \
+    consistent",
         ..NO_WORDS
     },
     SettingWords {
@@ -209,7 +210,7 @@ static SETTING_WORDS: [SettingWords; 30] = [
         help: "Source of the delta gain G: the two representatives, or the mean over all pairs of kept models",
         meanings: &[
             "G of the two representatives (the paper)",
-            "G is the mean of ln G over all pairs of kept models",
+            "G is the geometric mean over all pairs of kept models",
         ],
         ..NO_WORDS
     },
@@ -217,7 +218,7 @@ static SETTING_WORDS: [SettingWords; 30] = [
         key: "error_bars.level",
         caption: "Confidence level",
         label: "Confidence level",
-        help: "Level of every error bar, interval and test",
+        help: "Level of error bars, intervals and tests, except the 95 % bands of identified models",
         ..NO_WORDS
     },
     SettingWords {

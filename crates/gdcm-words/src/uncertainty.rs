@@ -45,8 +45,9 @@ pub fn difference_verdict(difference: &AirspeedDifference, level: f64) -> &'stat
     }
 }
 
-/// Describes a difference: "conditions 3 and 5 (45 kt) differ by 13 %, 5.4 × expected from trim and
-/// identification uncertainty; significant: a physical effect, or a model-form error".
+/// Describes a difference: "conditions 3 and 5 (45 kt) differ by 13 %, 5.4 times the difference
+/// expected from trim and identification uncertainty; significant: a physical effect, or a
+/// model-form error".
 pub fn difference_text(difference: &AirspeedDifference, level: f64) -> String {
     let [first, second] = difference.conditions;
     let airspeed_kt = difference.airspeed_kt;
@@ -57,7 +58,8 @@ pub fn difference_text(difference: &AirspeedDifference, level: f64) -> String {
         return format!("{differ}; their bundles have no spread to compare the difference with");
     };
     format!(
-        "{differ}, {ratio:.1} × expected from trim and identification uncertainty; {}",
+        "{differ}, {ratio:.1} times the difference expected from trim and identification \
+        uncertainty; {}",
         difference_verdict(difference, level)
     )
 }
@@ -76,6 +78,9 @@ pub fn differences_summary(uncertainty: &Uncertainty) -> String {
             format!(
                 "{count} differences between net gains at equal airspeed are too many to compare."
             )
+        }
+        (1, 0, _) => {
+            "The only difference between net gains at equal airspeed is not significant.".to_owned()
         }
         (_, 0, _) => format!(
             "None of the {compared} differences between net gains at equal airspeed is significant."
@@ -215,7 +220,10 @@ pub fn scatter_table(dataset: &Dataset, uncertainty: &Uncertainty) -> Table {
         "interval [%]",
         "× expected",
     ];
-    let mut table = Table::new("Contributions to the scatter of the net gains", columns);
+    let mut table = Table::new(
+        "Contributions to the scatter of the net gains, as standard deviations",
+        columns,
+    );
     let deviation = |variance: f64| percent(Some(variance.sqrt()));
     for scatter in &uncertainty.scatter {
         for (about, decomposition) in [
@@ -257,8 +265,8 @@ pub fn bar_table(analysis: &Analysis, uncertainty: &Uncertainty) -> Table {
         "response",
         "net gain",
         &level,
-        "trim uncertainty [%]",
-        "identification [%]",
+        "trim, standard deviation [%]",
+        "identification, standard deviation [%]",
         "residual in the band [%]",
         "remarks",
     ];

@@ -160,7 +160,7 @@ fn caption(analysis: &Analysis, table: &AssessmentTable) -> String {
     }
     let average = average_word(table.choice.average);
     caption.push_str(&format!(
-        " J is {average} over frequency; negative changes are improvements."
+        " J is based on {average} over frequency; negative changes are improvements."
     ));
     for left_out in &table.left_out {
         caption.push_str(&format!(

@@ -77,7 +77,7 @@ fn loop_plot(assessment: &CouplingsAssessment, shown: ConditionId, unit: Frequen
             unit.of_omega(assessment.band.max()),
         ),
         color: BAND,
-        key: "band".to_owned(),
+        key: "comparison band".to_owned(),
     };
     let ringing = Rule::horizontal(LoopMargin::CAUTION, RINGING).label("close to ringing");
     let y = Axis::linear("minimum singular value of I − K H")

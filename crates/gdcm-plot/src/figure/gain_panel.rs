@@ -36,7 +36,7 @@ const SIGNIFICANT_BRACKET: Stroke = Stroke::solid(Color::new(Hue::Warning), 0.7)
 /// Bracket between other net gains at the same airspeed.
 const OTHER_BRACKET: Stroke = Stroke::solid(Color::DIM, 0.4);
 /// Name for brackets at significant differences, in the legend and in the tables.
-pub(super) const SIGNIFICANT: &str = "significant difference, × expected";
+pub(super) const SIGNIFICANT: &str = "significant difference (n×: n times the expected one)";
 /// Name for the other brackets, in the legend and in the tables.
 const NOT_SIGNIFICANT: &str = "difference, not significant";
 /// Background that marks the bounds.

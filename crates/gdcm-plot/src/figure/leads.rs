@@ -98,7 +98,7 @@ impl PairLeads {
         }
         curves.push(LeadCurve {
             name: pair_name.clone(),
-            key: format!("{pair_name}, both"),
+            key: format!("{pair_name}, both channels"),
             stroke: Role::Corrected.stroke(false),
             dynamics: dynamics(correction, &[output, input]),
         });

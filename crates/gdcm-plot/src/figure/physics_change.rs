@@ -91,8 +91,8 @@ impl ResponsePlots<'_> {
             before: &response.physics.without.phase_deg,
             after: &response.physics.with.phase_deg,
         };
-        let magnitude = Axis::linear("[dB]").showing(magnitudes.range(LEAST_DB));
-        let phase = Axis::degrees("[deg]").showing(phases.range(LEAST_DEG));
+        let magnitude = Axis::linear("Magnitude [dB]").showing(magnitudes.range(LEAST_DB));
+        let phase = Axis::degrees("Phase [deg]").showing(phases.range(LEAST_DEG));
         Plot::new(format!("{name}, J {before} → {after}"))
             .panel(self.panel(magnitude, &magnitudes))
             .panel(self.panel(phase, &phases))

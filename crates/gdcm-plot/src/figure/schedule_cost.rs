@@ -129,7 +129,7 @@ fn cost_panel(analysis: &Analysis, costs: &[ResponseCosts]) -> Panel {
     );
     if !changes.is_empty() {
         panel = panel.with(Intervals {
-            name: "change from before to schedule".to_owned(),
+            name: "change due to the schedule".to_owned(),
             stroke: CHANGE,
             ends: changes,
         });

@@ -162,7 +162,8 @@ pub fn quantity_figure(
     let output = &dataset.outputs()[quantity.output].name;
     let label = format!("{output} [{}]", quantity.unit);
     let record = empty_panel(&label).with_all(history_marks(quantity, Shown::Values));
-    let error = empty_panel("error").with_all(history_marks(quantity, Shown::Error));
+    let error_label = format!("error [{}]", quantity.unit);
+    let error = empty_panel(&error_label).with_all(history_marks(quantity, Shown::Error));
     let plot = Plot::new("")
         .panel(record_input_panel(history, dataset, input).weight(INPUT_WEIGHT))
         .panel(record)

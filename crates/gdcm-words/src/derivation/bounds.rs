@@ -12,6 +12,9 @@ use super::deltas::{delays_ms, gain_ratios};
 use super::sample_words::range_words;
 use super::{Context, Derivation};
 
+/// Origin of bounds that the settings give, instead of the quantiles in the equation.
+const SET_BY_HAND: &str = "set by hand for all conditions; the equation is not used";
+
 /// Responses whose mismatches give the bounds: the on-axis responses, or all responses if none is
 /// on-axis or no on-axis response has a mismatch.
 struct Pool<'a> {
@@ -72,7 +75,7 @@ pub(super) fn gain_bounds(context: &Context<'_>) -> Derivation {
     let (with_numbers, rests_on) = if context.settings().gain_bounds.is_some() {
         (
             vec![format!("LB = {lower}"), format!("UB = {upper}")],
-            vec!["set by hand".to_owned()],
+            vec![SET_BY_HAND.to_owned()],
         )
     } else {
         let quantile = context.settings().quantile;
@@ -109,7 +112,7 @@ pub(super) fn delay_bound(context: &Context<'_>) -> Derivation {
     let value = s_to_ms(context.result.delay_upper_s());
     let upper = five_digits(value);
     let (step, rests_on) = if context.settings().delay_upper_s.is_some() {
-        (format!("UB = {upper} ms"), vec!["set by hand".to_owned()])
+        (format!("UB = {upper} ms"), vec![SET_BY_HAND.to_owned()])
     } else {
         let pool = Pool::new(context, |pair| context.mismatch(pair));
         let delays_ms: Vec<f64> = pool

@@ -68,12 +68,16 @@ pub(super) fn net_gain(context: &Context<'_>, pair: Pair) -> Derivation {
         five_digits(result.correction.gain(input)),
         five_digits(value)
     );
-    let delta = result.delta_gain(pair);
+    let delta = Delta {
+        name: "delta gain G",
+        unit: "",
+        value: result.delta_gain(pair),
+    };
     Derivation {
         title: context.title(&format!("net gain of {}", context.pair(pair))),
         equation: "k_o k_i".to_owned(),
         with_numbers: vec![step],
-        rests_on: vec![constraint_words(context, pair, &result.gains, delta)],
+        rests_on: vec![constraint_words(context, pair, &result.gains, &delta)],
         section: "M10, eq. (12)",
         value,
     }
@@ -92,36 +96,48 @@ pub(super) fn net_delay(context: &Context<'_>, pair: Pair) -> Derivation {
         five_digits(s_to_ms(result.correction.delay_s(input))),
         five_digits(value)
     );
-    let delta_ms = result.delta_delay_s(pair).map(s_to_ms);
+    let delta = Delta {
+        name: "delta delay D",
+        unit: " ms",
+        value: result.delta_delay_s(pair).map(s_to_ms),
+    };
     Derivation {
         title: context.title(&format!("net delay of {}", context.pair(pair))),
         equation: "τ_o + τ_i".to_owned(),
         with_numbers: vec![step],
-        rests_on: vec![constraint_words(context, pair, &result.delays, delta_ms)],
+        rests_on: vec![constraint_words(context, pair, &result.delays, &delta)],
         section: "M10, eq. (12)",
         value,
     }
 }
 
-/// Describes whether a response is constrained, and its delta gain or delay `delta`, the value that
-/// it needs; a delay in ms.
+/// The gain or delay that a response needs.
+struct Delta {
+    name: &'static str,
+    /// The value's unit, with a leading space; empty without a unit.
+    unit: &'static str,
+    value: Option<f64>,
+}
+
+/// Describes whether a response is constrained, and its delta gain or delta delay.
 fn constraint_words(
     context: &Context<'_>,
     pair: Pair,
     solution: &Solution,
-    delta: Option<f64>,
+    delta: &Delta,
 ) -> String {
-    let name = context.pair(pair);
-    let delta = match delta {
-        Some(delta) => five_digits(delta),
+    let response = context.pair(pair);
+    let name = delta.name;
+    let value = match delta.value {
+        Some(value) => format!("{}{}", five_digits(value), delta.unit),
         None => "undefined".to_owned(),
     };
     if solution.targets[pair].is_none() {
-        format!("{name} is not held; its delta is {delta}")
+        format!("{response} is not held; its {name} is {value}")
     } else if solution.unmatched.iter().any(|miss| miss.pair == pair) {
-        format!("{name} is held as close to its delta as possible; its delta is {delta}")
+        format!("{response} is held as close as possible to its {name}, {value}")
     } else {
-        format!("{name} is held at its delta, {delta}")
+        format!("{response} is held at its {name}, {value}")
     }
 }
 

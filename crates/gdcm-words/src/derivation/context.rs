@@ -119,7 +119,7 @@ impl<'a> Context<'a> {
 
     /// Lists the responses held (constrained) in this condition.
     pub(super) fn held(&self) -> String {
-        format!("held {}", self.pairs(self.result.held().marked()))
+        format!("held: {}", self.pairs(self.result.held().marked()))
     }
 }
 

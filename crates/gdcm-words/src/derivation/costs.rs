@@ -77,12 +77,17 @@ pub(super) fn cost_before(context: &Context<'_>, pair: Pair) -> Option<Derivatio
 pub(super) fn cost_after(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
     let cost = context.result.cost[pair]?.corrected;
     let average = context.settings().cost_average;
+    let corrected = if context.result.compensated.is_some() {
+        "k_o k_i L_o H_sim L_i"
+    } else {
+        "H_sim · k_o k_i e^(−jω(τ_o + τ_i))"
+    };
     let mut with_numbers = vec![correction_words(context, pair, &context.result.correction)];
     with_numbers.extend(cost_steps("J", cost, average));
     Some(Derivation {
         title: context.title(&format!("J of {} after the correction", context.pair(pair))),
         equation: format!(
-            "{}; for the corrected response H_sim · k_o k_i e^(−jω(τ_o + τ_i))",
+            "{}; for the corrected response {corrected}",
             cost_equation(average)
         ),
         with_numbers,

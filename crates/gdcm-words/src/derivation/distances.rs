@@ -127,7 +127,7 @@ fn model_words(model: &Model) -> Vec<String> {
         words.push(format!("identified by {method}"));
     }
     if let Some(order) = model.order() {
-        words.push(format!("{order} states"));
+        words.push(counted(order, "state"));
     }
     if let Dynamics::StateSpace(matrices) = &model.dynamics
         && !matrices.timing().is_plain()

@@ -91,7 +91,7 @@ fn bar_lines(bar: &Bar, scalar: Scalar, level: f64) -> Vec<String> {
 fn part_words(name: &str, scalar: Scalar, part: Option<VarianceComponent>) -> String {
     match part {
         Some(part) => format!(
-            "{name}: {} ({:.1} degrees of freedom)",
+            "{name}: standard deviation {} ({:.1} degrees of freedom)",
             deviation_words(scalar, part.variance.sqrt()),
             part.degrees_of_freedom
         ),

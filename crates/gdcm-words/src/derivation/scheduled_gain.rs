@@ -54,8 +54,12 @@ fn rests_on(analysis: &Analysis, schedule: &Schedule) -> Vec<String> {
         .iter()
         .map(ToString::to_string)
         .collect();
+    let optima = match ids.as_slice() {
+        [only] => format!("the optimum of condition {only}"),
+        ids => format!("the optima of conditions {}", ids.join(", ")),
+    };
     let mut rests_on = vec![
-        format!("the optima of conditions {}", ids.join(", ")),
+        optima,
         format!(
             "airspeeds {} to {} kt",
             number(schedule.airspeeds.min_kt),

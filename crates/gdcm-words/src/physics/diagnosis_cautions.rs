@@ -50,8 +50,13 @@ pub fn diagnosis_cautions(findings: &PhysicsFindings) -> Vec<String> {
     let poor = diagnosis.poorly_fitted();
     if !poor.is_empty() {
         let ids: Vec<String> = poor.iter().map(|id| id.to_string()).collect();
+        let conditions = if poor.len() == 1 {
+            "condition"
+        } else {
+            "conditions"
+        };
         cautions.push(format!(
-            "condition {}: fitted more than {NOTABLE_MISFIT} times worse than the median \
+            "{conditions} {}: fitted more than {NOTABLE_MISFIT} times worse than the median \
             condition; check the nominal model and the runs there",
             ids.join(", ")
         ));

@@ -72,7 +72,9 @@ fn refusal_text(refusal: &RunRefusal) -> String {
             same states in the same order"
         ),
         RunRefusal::Timing { base } => {
-            format!("its sample time or delays differ from those of \"{base}\"")
+            format!(
+                "its sample time or delays differ from those of \"{base}\"; use the same for both"
+            )
         }
         RunRefusal::Unit { expected, found } => {
             format!("unit of the step: expected {expected}, found {found}")

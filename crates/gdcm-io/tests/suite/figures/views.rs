@@ -377,7 +377,7 @@ fn net_gains_on_paper_have_their_bars_and_brackets() {
     let pair = example.pair("NZ", "COL");
     let figure = example.figure(FigureKind::NetGain, vec![pair]);
     let [beyond, within] = [
-        "significant difference, × expected",
+        "significant difference (n×: n times the expected one)",
         "difference, not significant",
     ];
     let names = [

@@ -13,7 +13,7 @@ use crate::reading_budget::VariableFault;
 pub enum ExportFault {
     /// A scheduled curve contains a value that is not finite.
     #[error(
-        "the scheduled {curve} of {channel} is not finite at every airspeed; change the degree or \
+        "the scheduled {curve} of {channel} has values that are not finite; change the degree or \
         the conditions of the schedule"
     )]
     Curve {
@@ -59,7 +59,7 @@ pub enum ExportFault {
     )]
     NoPhysics { why: String },
     /// A condition lacks its own result.
-    #[error("condition {condition}: {why}")]
+    #[error("condition {condition} has no result: {why}")]
     NoResult { condition: ConditionId, why: String },
     #[error("the dataset has no condition {condition}")]
     NoCondition { condition: ConditionId },

@@ -372,12 +372,17 @@ fn no_record_words(record: Option<&str>, count: usize) -> String {
         _ => format!("contains {count} records"),
     };
     match record {
-        Some(record) => format!(
-            "the record {} is not in this file, which {contents}; correct \"variable\" of the record in the \
-            dataset",
-            quoted(record)
-        ),
-        None if count < 2 => "the file contains no records".to_owned(),
+        Some(record) => {
+            let key = if count == 0 { "file" } else { "variable" };
+            format!(
+                "the record {} is not in this file, which {contents}; correct \"{key}\" of the \
+                record in the dataset",
+                quoted(record)
+            )
+        }
+        None if count < 2 => "the file contains no records; correct \"file\" of the record in the \
+            dataset"
+            .to_owned(),
         None => format!(
             "a single record is required, but the file {contents}; name one as \"variable\" of the record \
             in the dataset"

@@ -267,7 +267,7 @@ fn result_of<'a>(
     let why = match analysis.conditions.get(&condition.id()) {
         Some(Ok(result)) => return Ok(result),
         Some(Err(failure)) => failure_text(failure, &analysis.study.dataset),
-        None => "not analysed".to_owned(),
+        None => "it was not analysed".to_owned(),
     };
     Err(ExportFault::NoResult {
         condition: condition.id(),

@@ -23,8 +23,8 @@ pub enum ReadingNote {
     #[error("line {line} is skipped: one number, but the table has {columns} columns")]
     SingleNumber { line: usize, columns: usize },
     #[error(
-        "each line has one comma, which is read as the separator of two columns; decimal commas \
-        would look the same; if these are, write decimal points"
+        "each line has one comma between whole numbers, which is read as the separator of two \
+        columns; if it is a decimal comma, write a decimal point instead"
     )]
     CommaSeparates,
     #[error(
@@ -99,7 +99,7 @@ pub enum ReadingNote {
     DecreasingFrequencies,
 
     // Named matrices and statements.
-    #[error("line {line} (\"{start}\") is skipped")]
+    #[error("line {line} (\"{start}\") is skipped: neither a matrix name nor a row of numbers")]
     LineSkipped { line: usize, start: String },
     #[error("line {line} (\"{start}\") is read as column names")]
     ColumnNames { line: usize, start: String },
@@ -237,9 +237,9 @@ fn reason_words(quantity: &QuantityReason, unit: &UnitReason) -> String {
 /// Reason why a statement was skipped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SkippedStatement {
-    #[error("is not understood")]
+    #[error("is skipped: not an assignment")]
     NotUnderstood,
-    #[error("is not executed")]
+    #[error("is not executed: only assignments are read")]
     NotExecuted,
     /// A word such as `if`, `for` or `try` begins a block.
     #[error("is not executed, and values set in it are not read")]

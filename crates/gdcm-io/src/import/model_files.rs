@@ -63,7 +63,10 @@ impl FoundModels {
             if names.len() > MOST_LISTED {
                 listed.push(format!("and {} more", names.len() - MOST_LISTED));
             }
-            lines.push(format!("{file}: not used: {}", listed.join(", ")));
+            lines.push(format!(
+                "{file}: variables that no model uses: {}",
+                listed.join(", ")
+            ));
         }
         lines
     }

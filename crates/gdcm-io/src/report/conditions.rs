@@ -50,7 +50,7 @@ pub(super) fn add_conditions(
         ));
     }
     page.paragraph(
-        "Magnitude and phase of every model, and of the representative under its own and under \
+        "Magnitude and phase of the models, and of the representative under its own and under \
         the scheduled correction:",
     );
     for condition in conditions.iter().take(CONDITIONS_DRAWN) {

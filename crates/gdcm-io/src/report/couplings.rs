@@ -40,19 +40,21 @@ pub(super) fn with_couplings(
     })
 }
 
-/// Adds the section on couplings, if they are requested.
+/// Adds the section on couplings, if they are requested; only the reason if they are unavailable.
 pub(super) fn add_couplings(page: &mut Page, analysis: &Analysis) {
     if analysis.couplings.is_none() {
         return;
     }
     page.section("Couplings");
-    page.paragraph(
-        "A mixing of the inputs and, if requested, a feedback of outputs to inputs, common to all \
-        conditions, precede the corrections of the channels. The representatives, G, D, gains, \
-        delays, leads and J in this report are based on the physics models with these couplings. \
-        The choice of the representative of a bundle and the suggested outliers are determined \
-        without them.",
-    );
+    if analysis.fitted_couplings().is_some() {
+        page.paragraph(
+            "A mixing of the inputs and, if requested, a feedback of outputs to inputs, common to \
+            all conditions, correct each physics model before the channels are corrected. The \
+            representatives, G, D, gains, delays, leads and J in this report are based on the \
+            physics models with these couplings. The choice of the representative of a bundle and \
+            the suggested outliers are determined without them.",
+        );
+    }
     let remarks = analysis_coupling_remarks(analysis).into_iter();
     page.list(remarks.map(|remark| coupling_remark_text(&remark, &analysis.study.dataset)));
     let Some(assessment) = &analysis.coupling_assessment else {

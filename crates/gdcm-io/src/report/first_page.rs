@@ -66,10 +66,16 @@ fn verdict_sentence(analysis: &Analysis) -> String {
     for id in analysis.study.dataset.ids() {
         rejected += analysis.study.rejected_names(id).len();
     }
+    let schedule = match &analysis.schedule {
+        Ok(_) => format!(
+            "The schedule is fitted to {}",
+            counted(analysis.scheduled().len(), "condition")
+        ),
+        Err(_) => "There is no schedule".to_owned(),
+    };
     format!(
-        "{}. The schedule is fitted to {}; {} rejected.",
+        "{}. {schedule}; {} rejected.",
         capital(&study_verdict_text(analysis)),
-        counted(analysis.scheduled().len(), "condition"),
         counted_are(rejected, "model")
     )
 }
@@ -132,7 +138,7 @@ fn correction_table(analysis: &Analysis, pairs: &[Pair]) -> Table {
         None => String::new(),
     };
     let title = format!(
-        "Corrections: net gains of {}{interval}, and mean J of all {}",
+        "Corrections: verdict on gain and phase, net gains of {}{interval}, and mean J of all {}",
         shown_words(study, pairs),
         shown_noun(study)
     );

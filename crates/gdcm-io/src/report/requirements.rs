@@ -227,7 +227,7 @@ fn add_histories(page: &mut Page, histories: &TimeHistories) {
     };
     page.paragraph(&format!(
         "Share of time for which the models, driven by the recorded stick inputs, remain within \
-        the tolerances about the flight data ({source}): in windows of at most 10 s, each from \
+        the tolerances ({source}) about the flight data: in windows of at most 10 s, each from \
         an estimated initial state and offsets, over all records of a condition. Attitudes are \
         integrals of body rates from the start of each window, which is valid for small angles."
     ));

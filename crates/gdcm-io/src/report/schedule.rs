@@ -20,7 +20,7 @@ use gdcm_words::schedule::{delayed_channel_text, schedule_caution_text};
 
 use super::limits::PAIRS_DRAWN;
 use super::page::Page;
-use super::wording::names;
+use super::wording::{capital, names};
 
 /// Maximum number of channels per figure, in two rows.
 const CHANNELS_IN_A_FIGURE: usize = 12;
@@ -34,7 +34,7 @@ pub(super) fn add_schedule(page: &mut Page, analysis: &Analysis) {
     page.section("Schedule over airspeed");
     match &analysis.schedule {
         Ok(schedule) => add_airspeed(page, analysis, schedule),
-        Err(error) => page.paragraph(&format!("{error}.")),
+        Err(error) => page.paragraph(&format!("{}.", capital(&error.to_string()))),
     }
 }
 

@@ -67,7 +67,7 @@ pub enum LineFault {
     },
     #[error("the comment opened here is never closed; write %}} on a line of its own")]
     OpenComment,
-    #[error("invalid JSON ({message})")]
+    #[error("invalid JSON ({message}); correct it")]
     Json { message: String },
     #[error("the frequency in {place} {fault}")]
     Frequency {

@@ -157,8 +157,11 @@ fn bandwidth_remark(finding: &BandwidthFinding, name: &'static str, is_known: bo
     }
     if let Some(count) = finding.swaps_left_out.get(name) {
         remarks.push(match count {
-            1 => "interval without 1 other model, which gives no value".to_owned(),
-            _ => format!("interval without {count} other models, which give no value"),
+            1 => "the interval leaves out 1 other model, in which the quantity is undefined"
+                .to_owned(),
+            _ => format!(
+                "the interval leaves out {count} other models, in which the quantity is undefined"
+            ),
         });
     }
     remarks.join("; ")

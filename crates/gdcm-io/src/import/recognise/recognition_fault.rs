@@ -181,8 +181,8 @@ pub(crate) enum RecognitionFault {
     #[error("real and imaginary parts have different dimensions; save both with the same")]
     PartsDiffer,
     #[error(
-        "coherence: {} for the {expected} of the response; write one for each output, input and \
-        frequency, or leave it out",
+        "coherence: {} for the {expected} values of the response; write one for each output, input \
+        and frequency, or leave the coherence out",
         counted(*found, "number")
     )]
     CoherenceCount { found: usize, expected: usize },
@@ -277,7 +277,7 @@ pub(crate) enum RecognitionFault {
         /// Description of the found value.
         found: String,
     },
-    #[error("its time unit is {unit}; in MATLAB: sys = chgTimeUnit(sys, 'seconds')")]
+    #[error("its time unit is {unit}, not seconds; in MATLAB: sys = chgTimeUnit(sys, 'seconds')")]
     TimeUnit { unit: String },
     #[error(
         "{name}: contradictory values {} and {} for the same model; correct one",

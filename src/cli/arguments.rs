@@ -67,7 +67,7 @@ pub enum Command {
         after_help = "Examples:\n  gdcm assemble models --out dataset.json.gz\n  gdcm assemble models --rules dataset.gdcm-rules.json --out dataset.json.gz --force"
     )]
     Assemble(AssembleArguments),
-    /// Write every model and response in files of any supported format as JSON.
+    /// Convert every model and response in files of any supported format to JSON.
     #[command(
         after_help = "Examples:\n  gdcm convert model.mat --out models.json\n  gdcm convert folder other.npz --out models.json --force"
     )]
@@ -92,11 +92,11 @@ pub enum Command {
         file: PathBuf,
         #[command(flatten)]
         opening: OpeningArguments,
-        /// Reverse the sign of a channel in the models first, as with `analyze`: CHANNEL=-1. May be repeated.
+        /// Reverse the sign of a channel in the models before the check, as with `analyze`: CHANNEL=-1. May be repeated.
         #[arg(long, value_name = "CHANNEL=SIGN", value_parser = channel_sign, allow_hyphen_values = true)]
         sign: Vec<ChannelSign>,
     },
-    /// Compare the program with figures that independent code computed, on this machine and within seconds: certified optima, an
+    /// Compare results of the program with independent references, on this machine and within seconds: certified optima, an
     /// analysis by other code, closed forms, the identification of a known system. Needs no file and writes none.
     #[command(after_help = "Examples:\n  gdcm verify\n  gdcm verify --json")]
     Verify,

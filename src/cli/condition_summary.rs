@@ -153,7 +153,10 @@ fn bar_half_width(analysis: &Analysis, result: &ConditionAnalysis, scalar: Scala
 fn with_price_heading(columns: &[&str], price: Option<&LeadPrice>) -> Vec<String> {
     let mut headings: Vec<String> = columns.iter().map(|&column| column.to_owned()).collect();
     if let Some(price) = price {
-        headings.push(format!("dB at {} rad/s", number(price.above_rad_s())));
+        headings.push(format!(
+            "added gain at {} rad/s [dB]",
+            number(price.above_rad_s())
+        ));
     }
     headings
 }

@@ -48,7 +48,7 @@ pub(super) enum Failure {
     )]
     Models { path: String },
     /// The rules lack items, so no dataset can be made from the files.
-    #[error("no dataset was written: complete {} in {rules} and pass it with --rules", counted(*count, "item"))]
+    #[error("no dataset was written: complete {} in {rules}, and pass the rules with --rules", counted(*count, "item"))]
     Incomplete { count: usize, rules: String },
     /// Some records' columns are unclear or invalid, which has already been reported for each
     /// record.
@@ -66,8 +66,8 @@ pub(super) enum Failure {
     Unread { paths: String },
     /// Identification was completed, but the records identify no input.
     #[error(
-        "the records identify no input: the models do not describe the responses to {inputs}; \
-        add records with sweeps of these inputs"
+        "no input can be identified from the records: the models do not describe the responses to \
+        {inputs}; add records with sweeps of these inputs"
     )]
     NotIdentified { inputs: String },
     #[error("no thread can be started: {reason}")]

@@ -151,7 +151,7 @@ const COLUMNS: [RecurringColumn; 3] = [
     },
     RecurringColumn {
         heading: "J with leads",
-        sentence: "the last column is the mean J of the held responses, without and with a delay or lead in each channel",
+        sentence: "column J with leads is the mean J of the held responses, without and with a delay or lead in each channel",
         format: cost_with_leads,
     },
 ];

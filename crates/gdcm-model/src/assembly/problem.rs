@@ -158,11 +158,11 @@ pub enum ProblemKind {
     },
     /// The values in a file contradict its name or its folders' names.
     #[error(
-        "{field} is {} in the file and {} in the names of the file and its folders: correct one, or enter the right value (\"{field}\" \
-         under \"models\" in the rules)", number(*of_file), number(*of_name)
+        "{field} is {} in the file and {} in the names of the file and its folders: correct one, or enter the right value (\"{}\" \
+         under \"models\" in the rules)", number(*of_file), number(*of_name), rules_key(field)
     )]
     NameContradiction {
-        /// Quantity, by its key in the rules.
+        /// Quantity, by its key in the rules; a trim offset as "perturbation, roll_deg".
         field: String,
         of_file: f64,
         of_name: f64,
@@ -234,6 +234,12 @@ impl fmt::Display for GridSpan {
             "{count} frequencies from {lowest_rad_s:.1} to {highest_rad_s:.1} rad/s"
         )
     }
+}
+
+/// Returns the key in the rules for a quantity of [`ProblemKind::NameContradiction`]: for a trim
+/// offset, "perturbation, roll_deg", the member without the coordinate.
+fn rules_key(field: &str) -> &str {
+    field.split(',').next().unwrap_or(field)
 }
 
 impl ProblemKind {

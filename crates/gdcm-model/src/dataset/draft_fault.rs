@@ -105,7 +105,7 @@ pub struct Warning {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum DraftOddity {
     /// The order stated by the identification differs from the state count.
-    #[error("the stated order is {stated}, but the matrices have {}", counted(*states, "state"))]
+    #[error("the stated order is {stated}, but the matrices have {}; the matrices are used", counted(*states, "state"))]
     Order { stated: usize, states: usize },
     /// The number of state names differs from the state count.
     #[error(

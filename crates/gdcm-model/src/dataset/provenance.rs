@@ -41,7 +41,7 @@ impl Provenance {
         }
         parts.extend(self.note.clone());
         if !self.unused.is_empty() {
-            parts.push(format!("not used: {}", self.unused.join(", ")));
+            parts.push(format!("unused variables: {}", self.unused.join(", ")));
         }
         parts.join(", ")
     }

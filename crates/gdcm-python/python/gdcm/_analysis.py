@@ -574,7 +574,7 @@ class Analysis:
         width: str = "double",
         progress: Optional[Progress] = None,
     ) -> Figure:
-        """Draw a figure as the window does; a notebook shows it as it is.
+        """Draw a figure as the window does; a notebook displays it.
 
         Parameters
         ----------
@@ -582,7 +582,7 @@ class Analysis:
             Name as in ``gdcm figure --view``: "bode", "error", "overview" (of one condition),
             "net-gain", "channels", "evidence", "airspeeds", "poles", and others.
         condition : int
-            Condition of the figures of one condition.
+            Condition, for the figures of a single condition.
         response
             Responses, ``("Q", "LON")`` or a list, or "on-axis", "off-axis", "all".
         channel
@@ -704,7 +704,8 @@ def analyze(
     alpha, alpha_delay : float
         Weights that keep output gains near 1 and delays near 0.
     delay_from : {"median", "band"}
-        Delays from the median of the phase, or from a line over the band.
+        Definition of the delta delay D: median of the phase difference divided by frequency, or
+        slope of the line through the origin fitted to it over the band.
     lead_order, lead_n, lead_r_max
         Lead filters: order (1 or 2); n in the lag 1/(n omega_B), with omega_B the upper end of the
         band; greatest gain.
@@ -716,13 +717,15 @@ def analyze(
     parameter : dict
         Changes of parameters set by hand, in their units: ``{"Ixx": "+4%"}``.
     quantile : float
-        Quantile of the delta gains and delays from which the bounds follow, 0 to 0.5.
+        Quantile q, 0 to 0.5; the bounds are the quantiles q and 1 - q of the ratio of the identified
+        to the physics responses over the band, and of their phase difference divided by frequency.
     gain_bounds : (float, float) or "auto"
         Least and greatest gain of a channel.
     delay_bound : float or "auto"
         Greatest delay of a channel [s].
     agreement : float
-        Mismatch [dB] up to which the gains of a loop of held responses count as consistent.
+        Largest mismatch [dB] at which held gains that form a loop of responses still count as
+        consistent.
     cost_average : {"median", "mean"}
         Average of squared errors over frequency.
     gain_objective : {"ratio", "dB"}

@@ -320,7 +320,7 @@ class Dataset:
 
     def save(self, file: PathText, *, force: bool = False) -> None:
         """Write the dataset, compressed if the name ends in ".gz". If it ends in ".gdcm-study.json",
-        write the study, and its dataset into the same folder if that has no file yet.
+        write the study, and its dataset into the same folder if the dataset has no file yet.
 
         An existing dataset is replaced only with `force`.
         """

@@ -13,7 +13,7 @@ use super::signal_names::{listed, names};
 pub enum RecordCaution {
     /// A record with uneven sample times was interpolated, as allowed.
     #[error(
-        "{record}: the sample time varies by {percent:.0} %; it was interpolated to even steps"
+        "{record}: the sample time varies by {percent:.0} %; the samples were interpolated to even steps"
     )]
     Resampled {
         record: String,
@@ -47,7 +47,7 @@ pub enum RecordCaution {
     },
     /// A value that is implausible in the channel's unit.
     #[error(
-        "{signal} reaches {greatest:.3}, above the plausible maximum {limit}: check the unit of its column"
+        "{signal} reaches {greatest:.3}, above {limit:.3}, the plausible maximum in its unit: check the unit of its column"
     )]
     UnlikelyUnit {
         signal: Signal,
@@ -92,7 +92,7 @@ pub enum RecordCaution {
     },
     /// An input often moves at one rate and never faster (M14.24).
     #[error(
-        "{signal} moves at {rate:.4} per second, and never faster, for {percent:.0} % of the time that it moves in {record}{}: \
+        "{signal} moves at {rate:.4} of its units per second, and never faster, for {percent:.0} % of the time that it moves in {record}{}: \
         a rate limit. The response then depends on the amplitude, and if the limiter acts after the \
         log, the record does not show the input. Sweep with a smaller amplitude at high frequency, or \
         lower the upper end of the band",
@@ -166,11 +166,11 @@ fn spike_text(record: &str, signal: &Signal, times_s: &[f64], deviations: f64) -
         times.push(format!("{} more", times_s.len() - LISTED_SPIKES));
     }
     let spikes = match times_s.len() {
-        1 => "a spike".to_owned(),
-        count => format!("{count} spikes"),
+        1 => "a spike of".to_owned(),
+        count => format!("{count} spikes of up to"),
     };
     format!(
-        "{record}: {signal} has {spikes} of up to {deviations:.1} standard deviations, at {}: single \
+        "{record}: {signal} has {spikes} {deviations:.1} standard deviations, at {}: single \
         samples far off their neighbours, used as logged. If the samples are wrong, delete them in \
         the file (an empty cell or null): up to 3 missing samples are bridged by a straight line",
         listed(&times)

@@ -183,7 +183,7 @@ pub fn across_view_ui(
         ..BodeScene::new(&title, &curves.responses, (band.min(), band.max()))
     };
     let optima_note = PaneNote {
-        cost: "green: range of optima".to_owned(),
+        cost: "green: range of errors at the optima".to_owned(),
         ..PaneNote::default()
     };
     let shown_note = if curves.optima.is_some() {

@@ -27,7 +27,7 @@ impl FigureWords for AssessmentPlots<'_> {
             });
         }
         format!(
-            "Change of J, {}: {}",
+            "Change of J by condition, {}: {}",
             self.state.dataset().pair_name(pair),
             words.join(", ")
         )

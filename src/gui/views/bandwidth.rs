@@ -108,7 +108,7 @@ fn absence_text(state: &State, requirements: &Requirements, pair: Pair) -> Strin
         .or_else(|| finding.absent.get("phase_delay_s"));
     match why {
         Some(why) => format!("{name}: {}", no_bandwidth_text(why)),
-        None => format!("{name} has no bandwidth with a phase delay"),
+        None => format!("{name}: no model has both a bandwidth and a phase delay"),
     }
 }
 

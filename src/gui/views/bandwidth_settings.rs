@@ -70,9 +70,9 @@ fn attitude_commands_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>)
 fn levels_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let levels = state.study.requirements.levels.as_slice().len();
     let text = if levels == 0 {
-        "levels: none".to_owned()
+        "level boundaries: none".to_owned()
     } else {
-        format!("levels: {levels}")
+        format!("level boundaries: {levels}")
     };
     ui.label(palette.small(text));
     if levels > 0 && ui.small_button("Remove levels").clicked() {

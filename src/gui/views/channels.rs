@@ -77,7 +77,7 @@ pub fn channels_header_ui(
         label: "over",
     };
     option.ui(ui, &mut across, &axes, palette);
-    error_bars_switch_ui(ui, state, "bars of the channels", commands);
+    error_bars_switch_ui(ui, state, "error bars of the channels", commands);
     if (measure, across) != shown {
         commands.push(DisplayCommand::ShowChannels(measure, across).into());
     }

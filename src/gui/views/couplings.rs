@@ -309,7 +309,7 @@ impl CouplingsWords<'_> {
         let dataset = self.state.dataset();
         let columns = [
             "condition",
-            "minimum singular value",
+            "minimum singular value of I − K H",
             "at [rad/s]",
             "change above the band [dB]",
             "response",

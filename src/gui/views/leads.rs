@@ -109,9 +109,9 @@ pub fn leads_table(state: &State) -> Option<Table> {
     let columns = [
         "channel".to_owned(),
         "lead [ms]".to_owned(),
-        format!("phase at {} [deg]", number(band_top)),
+        format!("phase at {} rad/s [deg]", number(band_top)),
         "replaced servo [rad/s]".to_owned(),
-        format!("gain at {} [dB]", number(above)),
+        format!("gain at {} rad/s [dB]", number(above)),
     ];
     let mut table = Table::new(title, columns);
     for channel in all_channels(state.dataset()) {

@@ -361,7 +361,7 @@ const SCHEDULE_COST: ViewContent = ViewContent {
     draw: schedule_cost_view_ui,
     title: ViewTitle::Words(schedule_cost_words),
     tools: |ui, state, _, commands| {
-        error_bars_switch_ui(ui, state, "bars of the schedule cost", commands);
+        error_bars_switch_ui(ui, state, "error bars of the schedule cost", commands);
     },
     tools_width: 60.0,
     figure_pairs: focused_pair,

@@ -52,7 +52,7 @@ fn discrete_time_words(model: &Model) -> Option<String> {
     };
     let sample_time_s = system.timing().sample_time_s?;
     Some(format!(
-        "s = ln z / T, T = {} s; poles at z = 0 have no s and are not drawn",
+        "s = ln z / Δt, sample time Δt {} s; poles at z = 0 have no s and are not drawn",
         number(sample_time_s)
     ))
 }

@@ -34,10 +34,11 @@ pub fn net_gain_words(state: &State) -> String {
     } else {
         format!(", {level:.0} % error bars")
     };
-    format!(
-        "output k times input k, {} responses{bars}",
-        state.display.gains.net_gain_pairs.name()
-    )
+    let responses = match state.display.gains.net_gain_pairs {
+        PairSet::Focused => "response in focus".to_owned(),
+        set => format!("{} responses", set.name()),
+    };
+    format!("output k times input k, {responses}{bars}")
 }
 
 /// Draws, from right to left: the switches for evidence and error bars, the overlaid variant, the
@@ -64,7 +65,7 @@ pub fn net_gain_header_ui(
         let button = ui.small_button(
             RichText::new(format!("□ {variant} ×")).color(palette.label_color(palette.corrected)),
         );
-        let name = format!("Overlaid variant {variant}");
+        let name = format!("Remove the overlay of variant {variant}");
         let hint = "Hollow squares: net gains of this variant. Click: remove them";
         if named(button, Role::Button, &name)
             .on_hover_text(hint)

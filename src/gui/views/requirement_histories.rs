@@ -267,7 +267,7 @@ pub(super) fn time_numbers_ui(
     Grid::new("peak errors of the models")
         .num_columns(4)
         .show(ui, |ui| {
-            for heading in ["", "inside, %", "peak, %", "at, s"] {
+            for heading in ["", "inside, %", "peak error, %", "at, s"] {
                 ui.label(palette.small(heading));
             }
             ui.end_row();

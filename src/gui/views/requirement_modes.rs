@@ -86,8 +86,8 @@ pub(super) fn modes_detail_ui(
             let note = if is_coupled {
                 "Couplings move poles; gains, delays and leads do not"
             } else {
-                "Unchanged by gains, delays and leads: only couplings or the physics model move \
-                    poles"
+                "Unchanged by gains, delays and leads; only couplings and changes to the physics \
+                    model move poles"
             };
             ui.label(palette.small(note));
         });
@@ -96,7 +96,7 @@ pub(super) fn modes_detail_ui(
 fn paint_headings(ui: &Ui, row: Rect, model: &str, palette: &Palette) {
     let painter = ui.painter();
     for (edge, text) in [
-        (JUDGED_EDGES[1], format!("{model} \u{3c9}, \u{3b6}")),
+        (JUDGED_EDGES[1], format!("{model} \u{3c9} [rad/s], \u{3b6}")),
         (IDENTIFIED_EDGES[1], "ident. \u{3c9}, \u{3b6}".to_owned()),
     ] {
         let at = pos2(row.left() + edge * row.width(), row.center().y);

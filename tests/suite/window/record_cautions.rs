@@ -97,7 +97,7 @@ fn cautions_stand_as_marks_at_their_places_and_their_buttons_act() {
         window.query_by_label("Cautions of flight 3").is_none(),
         "what was said is out of date"
     );
-    press(&mut window, "Instead of: Fit flight 3 too");
+    press(&mut window, "Alternatives to: Fit flight 3 too");
     press(&mut window, "Leave flight 3 out");
     assert!(!records(&window).rows[3].used);
 }

@@ -319,7 +319,7 @@ fn all_conditions_are_identified_by_default_and_their_fits_are_used_in_one_step(
         [ConditionId(3), CONDITION_10_ID]
     );
     // Only the displayed condition.
-    click(&mut window, "Use for 10");
+    click(&mut window, "Use this fit");
     click(&mut window, "The refined models");
     let taken: Vec<ConditionId> = state(&window)
         .study
@@ -1500,7 +1500,7 @@ fn the_quadrotor_is_identified_in_the_window_from_its_log_alone() {
     click(&mut window, "Use x0 as reference");
     assert_eq!(state(&window).records.conditions[&of].references, ["x0"]);
     // The list of columns can deselect the reference, and select it again.
-    click(&mut window, "Instead of: Use x0 as reference");
+    click(&mut window, "Alternatives to: Use x0 as reference");
     click(&mut window, "Choose a reference…");
     window.run_steps(10);
     for expected in [&[][..], &["x0".to_owned()][..]] {

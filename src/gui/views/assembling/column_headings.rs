@@ -4,6 +4,7 @@
 //! holds; the engineer may replace them.
 
 use egui::{Grid, RichText, Role, Ui};
+use gdcm_model::number_format::counted;
 
 use crate::gui::commands::command::Command;
 use crate::gui::state::assembling::AssemblyState;
@@ -46,7 +47,10 @@ pub(super) fn column_headings_ui(
         });
     if headings.len() > MOST_COLUMNS {
         let more = headings.len() - MOST_COLUMNS;
-        ui.label(palette.small(format!("and {more} more; name them in the rules file")));
+        ui.label(palette.small(format!(
+            "and {}; give the other headings in the rules file",
+            counted(more, "more column")
+        )));
     }
 }
 
@@ -73,8 +77,8 @@ fn possible_units_ui(
                 format!("The values are in {unit}")
             } else {
                 format!(
-                    "The values are in {unit}, also in the {} other tables with these headings",
-                    alike_count - 1
+                    "The values are in {unit}, also in the {} with these headings",
+                    counted(alike_count - 1, "other table")
                 )
             };
             let button = named(ui.small_button(*unit), Role::Button, name);

@@ -280,7 +280,7 @@ fn evidence_table(diagnosed: &DiagnosedParameter<'_>, findings: &PhysicsFindings
     if let Some(variance) = diagnosis.variance {
         for (source, percent) in variance_shares(variance) {
             table.row([
-                format!("interval from {source}"),
+                format!("variance from {source}"),
                 format!("{} %", decimals(percent, 0)),
             ]);
         }

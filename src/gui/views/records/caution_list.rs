@@ -202,7 +202,7 @@ fn remedies_ui(ui: &mut Ui, remedies: &[Remedy], commands: &mut Vec<Command>) {
     named(
         response,
         Role::Button,
-        format!("Instead of: {}", first.label),
+        format!("Alternatives to: {}", first.label),
     );
 }
 

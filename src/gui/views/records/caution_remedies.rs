@@ -288,7 +288,7 @@ fn raise_lowest_frequency(records: &ConditionRecords, omega_of_one_period: f64) 
     let lowest = LEAST_PERIODS * omega_of_one_period;
     if lowest < highest {
         Some(Remedy {
-            short: format!("Start at {lowest:.2}"),
+            short: format!("Start at {lowest:.2} rad/s"),
             ..use_band([lowest, highest])
         })
     } else {

@@ -16,7 +16,7 @@ use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::{Asks, named};
 
 /// Summarises the groups: the count of records to assign; else the count of assumed units; else
-/// "same for all 99 ✓", or the count of groups.
+/// "same for all 99 ✓" ("1 record ✓" for a single one), or the count of groups.
 pub(super) fn columns_summary(state: &State) -> FoldSummary {
     let groups = state.records.column_groups();
     let mut records = 0;
@@ -44,6 +44,7 @@ pub(super) fn columns_summary(state: &State) -> FoldSummary {
     FoldSummary {
         text: match groups.len() {
             0 => "no records".to_owned(),
+            1 if records == 1 => "1 record ✓".to_owned(),
             1 => format!("same for all {records} ✓"),
             count => format!("{count} groups ✓"),
         },

@@ -23,10 +23,10 @@ pub fn condition_table(state: &State) -> Table {
         "fit",
         "order",
         "χ²/dof",
-        "held out",
+        "χ²/dof, held out",
         "models",
         "cautions",
-        "time [s]",
+        "computing time [s]",
     ];
     let mut table = Table::new("Identified conditions", columns);
     for id in state.records.conditions_in_use() {

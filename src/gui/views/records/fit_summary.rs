@@ -225,10 +225,10 @@ fn use_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
         ui.horizontal_centered(|ui| {
             ui.spacing_mut().item_spacing.x = 8.0;
             if records.identification().is_some() {
-                let text = format!("Use for {condition}");
+                let text = "Use this fit";
                 let hint =
                     "Replaces the identified models of this condition; can be undone in one step";
-                if let Some(offered) = offered_models_ui(ui, &text, hint) {
+                if let Some(offered) = offered_models_ui(ui, text, hint) {
                     commands.push(RecordsCommand::Adopt(offered).into());
                 }
             }

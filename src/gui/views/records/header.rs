@@ -57,9 +57,14 @@ fn use_ui(ui: &mut Ui, fits: &[ConditionId], palette: &Palette, commands: &mut V
     more_ui(ui, "Other models of the fits", entries, commands);
     let text = format!("Use {}", counted(fits.len(), "fit"));
     let names: Vec<String> = fits.iter().map(ToString::to_string).collect();
+    let conditions = if fits.len() == 1 {
+        "condition"
+    } else {
+        "conditions"
+    };
     let hint = format!(
-        "Replaces the identified models of condition {} by the refined models; can be undone in \
-            one step",
+        "Replaces the identified models of {conditions} {} with the refined models; can be undone \
+            in one step",
         names.join(", ")
     );
     let text = RichText::new(text).color(palette.on_accent());

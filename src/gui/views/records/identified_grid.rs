@@ -249,16 +249,16 @@ impl Grid<'_> {
 }
 
 impl PairFigures {
-    /// Describes the values: "± 0.50 dB and ± 3.0° in the middle of the band, …".
+    /// Describes the values: "± 0.50 dB and ± 3.0° (1 σ) in the middle of the band, …".
     fn words(&self) -> String {
         let mut words = format!(
-            "± {} dB and ± {}° in the middle of the band, median partial coherence {}",
+            "± {} dB and ± {}° (1 σ) in the middle of the band, median partial coherence {}",
             value_text(self.sd_db, 2),
             value_text(self.sd_deg, 1),
             value_text(self.coherence, 2)
         );
         if !self.is_identified {
-            words.push_str("; not identified");
+            words.push_str("; not identified: more than ± 3 dB");
         }
         words
     }

@@ -99,7 +99,7 @@ fn page_of<'a>(state: &'a State, nothing: &'a ConditionRecords, palette: &'a Pal
     }
 }
 
-/// Draws the heading: "Records of 10", and at the right "8 used, 1 held out".
+/// Draws the heading: "Records, condition 10", and at the right "8 used, 1 held out".
 fn heading_ui(ui: &mut Ui, page: Page<'_>) {
     let Page {
         state,
@@ -109,7 +109,7 @@ fn heading_ui(ui: &mut Ui, page: Page<'_>) {
     let counts = records.counts();
     ui.add_space(4.0);
     ui.horizontal(|ui| {
-        let title = format!("Records of {}", state.condition().id());
+        let title = format!("Records, condition {}", state.condition().id());
         ui.label(RichText::new(title).font(medium(BODY_SIZE)));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let words = match (counts.fitted, counts.held_out) {

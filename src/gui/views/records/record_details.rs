@@ -145,7 +145,10 @@ fn quality_words(page: Page<'_>, row: &LaidOutRecord) -> String {
             parts.push("no clipping of inputs".to_owned());
         }
         for (signal, percent) in &record_use.inputs_at_limit {
-            parts.push(format!("{} at its limit for {percent:.0} %", signal.name));
+            parts.push(format!(
+                "{} at its limit for {percent:.0} % of the record",
+                signal.name
+            ));
         }
     }
     let mut assumed = Vec::new();
@@ -164,7 +167,8 @@ fn quality_words(page: Page<'_>, row: &LaidOutRecord) -> String {
         ));
     }
     if parts.is_empty() {
-        return "not checked by an up-to-date identification".to_owned();
+        return "gaps and clipping not checked: no up-to-date identification uses this record"
+            .to_owned();
     }
     parts.join(", ")
 }

@@ -360,7 +360,7 @@ impl ResponseCharts<'_> {
             width: 1.3,
             dash: None,
         });
-        let caption = ["Partial coherence", "below 0.6: points above are hollow"];
+        let caption = ["Partial coherence", "below 0.6, the points are hollow"];
         self.show(ui, place, caption, &chart);
     }
 

@@ -56,10 +56,12 @@ pub(super) fn role_chips_ui(
                         .to_owned()
                 }
             },
-            (TimeRole::Identified, None) => {
+            (TimeRole::Identified, None) if page.records.identification().is_none() => {
                 "No model has been identified from records: choose Identify".to_owned()
             }
-            (_, None) if page.state.shown().is_none() => {
+            (TimeRole::Physics | TimeRole::Corrected | TimeRole::Scheduled, None)
+                if page.state.shown().is_none() =>
+            {
                 "The condition has no result, so no model to simulate".to_owned()
             }
             (TimeRole::Scheduled, None) if has_no_schedule(page) => {

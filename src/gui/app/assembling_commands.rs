@@ -113,7 +113,7 @@ impl GdcmApp {
         let Some(dataset) = import.assembly().dataset(&folder) else {
             return self.notify_error(Message::new(
                 "incomplete-rules",
-                "complete the marked items before the dataset can be made",
+                "the dataset cannot be made yet: complete the marked items first",
             ));
         };
         let rules = import.assembly().rules().clone();

@@ -117,7 +117,11 @@ impl GdcmApp {
         let mut new = paths;
         new.retain(|path| !import.sources.contains(path));
         import.sources.extend(new);
-        let text = format!("{} in {}", counted(models, "model"), counted(files, "file"));
+        let text = format!(
+            "read {} from {}",
+            counted(models, "model"),
+            counted(files, "file")
+        );
         self.notify_done(Message::new("models-read", text));
     }
 }

@@ -48,7 +48,7 @@ pub fn command_table(state: &State) -> Vec<Entry> {
     }
     let use_leads = Entry::new(
         "Use leads",
-        "Corrects phases up to the top of the band, at the price of gains above it",
+        "Corrects phases up to the top of the band, at the price of more gain above it",
         setting_table::PHASE.to(PhaseCorrection::Lead),
     );
     entries.push(use_leads.enabled(!has_leads));

@@ -87,7 +87,7 @@ fn open_entries() -> [Entry; 6] {
             FileCommand::OpenExample(Example::Simulated),
         ),
         Entry::new(
-            "Open the real aircraft",
+            "Open the real-aircraft example",
             "Published physics model and two flights of a quadrotor; they come with the program",
             FileCommand::OpenExample(Example::RealAircraft),
         ),

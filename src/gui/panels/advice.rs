@@ -13,7 +13,7 @@ use gdcm_model::units::telling;
 use gdcm_study::decisions::setting_table;
 use gdcm_study::decisions::setting_value::Value;
 use gdcm_study::decisions::signs::SignRole;
-use gdcm_study::results::correction_costs::CorrectionCost;
+use gdcm_study::results::correction_costs::AxisCost;
 use gdcm_study::{ConditionAnalysis, CouplingCorrection, Edit, PhaseCorrection};
 use gdcm_words::verdict::unbroken;
 
@@ -172,7 +172,7 @@ impl Advice {
             );
             return Some(Self {
                 steps: vec![use_them, inspect],
-                note: off_axis_note(cost),
+                note: off_axis_note(cost.without, cost.with),
             });
         }
         let used = used_couplings(state)?;
@@ -186,17 +186,17 @@ impl Advice {
         );
         Some(Self {
             steps: vec![switch_off, inspect],
-            note: off_axis_note(cost),
+            note: off_axis_note(cost.with, cost.without),
         })
     }
 }
 
-/// Formats J of the unconstrained responses without and with couplings, as "off-axis J 41→12";
+/// Formats the mean J of the off-axis responses before and after the step, as "off-axis J 41→12";
 /// empty if it is undefined.
-fn off_axis_note(cost: CorrectionCost) -> String {
-    match (cost.without.others, cost.with.others) {
-        (Some(without), Some(with)) => {
-            format!("off-axis J {}→{}", telling(without, 0), telling(with, 0))
+fn off_axis_note(before: AxisCost, after: AxisCost) -> String {
+    match (before.others, after.others) {
+        (Some(before), Some(after)) => {
+            format!("off-axis J {}→{}", telling(before, 0), telling(after, 0))
         }
         _ => String::new(),
     }

@@ -142,7 +142,7 @@ fn dock_head_ui(
         let is_enlarged = dock.is_open && dock.is_enlarged;
         commands.push(LayoutCommand::EnlargeDock(!is_enlarged).into());
     }
-    named_switch(bar, Role::Button, dock.is_enlarged, "Bar of the dock");
+    named_switch(bar, Role::Button, dock.is_enlarged, "Enlarge the dock");
     ui.allocate_ui_with_layout(
         vec2(width, FOLDED),
         Layout::right_to_left(Align::Center),

@@ -158,8 +158,8 @@ const GESTURES: &[(&str, &str)] = &[
 const MARKS: &[(&str, &str)] = &[
     (
         "⚠",
-        "models are suggested as outliers, or a held gain or a held delay that needs no lead is not \
-         matched; the tooltip of the row counts them",
+        "suggested outliers, held gains or delays not matched (those that need lead count only while \
+         leads are in use), or no result; the tooltip of the row lists them",
     ),
     (
         "dot or square",

@@ -8,6 +8,7 @@ use egui::{Align, Label, Layout, Role, ScrollArea, Sense, Ui, UiBuilder, pos2, v
 
 use gdcm_method::fidelity::SUGGESTION_RATIO;
 use gdcm_model::dataset::{BundleKind, Model};
+use gdcm_model::number_format::counted;
 use gdcm_study::Edit;
 
 use super::model_row::{ModelRow, Neighbours, method};
@@ -84,7 +85,7 @@ const FOLD: f32 = 36.0;
 
 fn physics_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let kind = BundleKind::Physics;
-    let title = format!("Physics models of {}", state.condition().id());
+    let title = format!("Physics models, condition {}", state.condition().id());
     let heading = TableHeading {
         title: &title,
         value: &state.kept_words(kind),
@@ -116,10 +117,10 @@ fn all_models_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut V
     ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
         let rejected = choice.physics.rejected.len();
         let words = match (open.len(), rejected) {
-            (0, 0) if state.shown().is_none() => "no result, so none suggested".to_owned(),
-            (0, 0) => "none suggested".to_owned(),
+            (0, 0) if state.shown().is_none() => "no result, so no outliers suggested".to_owned(),
+            (0, 0) => "no outliers suggested".to_owned(),
             (0, rejected) => format!("{rejected} rejected"),
-            (open, 0) => format!("{open} suggested"),
+            (open, 0) => format!("{} suggested", counted(open, "outlier")),
             (open, rejected) => format!("{open} suggested, {rejected} rejected"),
         };
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {

@@ -57,25 +57,26 @@ struct Cause {
 const CAUSES: [Cause; 4] = [
     Cause {
         title: "Record clock",
-        symptom: "Outputs with late time stamps lag by the same time in every response.",
+        symptom: "Outputs stamped early, or inputs stamped late, make the physics model lag by the same \
+            time in every response.",
         compares: None,
         view: View::Records,
     },
     Cause {
         title: "Integration and sampling",
-        symptom: "Outputs delayed by one simulation step lag by that step in every response.",
+        symptom: "A simulation that delays its outputs by one step lags by that step in every response.",
         compares: None,
         view: View::Error,
     },
     Cause {
         title: "Servos",
-        symptom: "A slow servo lags in every response to its input, and in no other.",
+        symptom: "A servo model that is too slow lags in every response to its input, and in no other.",
         compares: Some(ChannelSide::Input),
         view: View::Channels,
     },
     Cause {
         title: "Sensors and their filters",
-        symptom: "A slow sensor lags in every response at its output, and in no other.",
+        symptom: "A sensor model that is too slow lags in every response at its output, and in no other.",
         compares: Some(ChannelSide::Output),
         view: View::Channels,
     },
@@ -158,7 +159,7 @@ fn causes_ui(
         ui.label(palette.small(cause.symptom));
         if let Some(side) = cause.compares {
             let lags = lag_words(state, shown, side);
-            ui.label(palette.small(format!("Median lag [ms]: {lags}")));
+            ui.label(palette.small(format!("Median lag of the physics model [ms]: {lags}")));
         }
         let button = Button::new(format!("Show {}", cause.view.name()));
         let show = LayoutCommand::ShowView(cause.view);
@@ -238,8 +239,8 @@ fn objective_ui(
     } else {
         ""
     };
-    let gains = format!("objective {:.4}{unit}", shown.gains.objective);
-    let delays = format!("delays {:.4} s²", shown.delays.objective);
+    let gains = format!("gain objective {:.4}{unit}", shown.gains.objective);
+    let delays = format!("delay objective {:.4} s²", shown.delays.objective);
     let id = shown.condition.id();
     ui.horizontal_wrapped(|ui| {
         let label = value_label_ui(

@@ -180,12 +180,28 @@ struct ChannelValue {
     half_width: Option<String>,
     /// Value when the settings were opened, if its text has changed since.
     earlier: Option<String>,
-    /// Accessible name.
+    /// Accessible name, without the value.
     name: String,
+    /// Units of the value and of the half-width in the accessible name.
+    unit: &'static str,
+    half_width_unit: &'static str,
     /// Unrounded value, for the tooltip.
     exact: String,
     scalar: Scalar,
     asked: ExplainTarget,
+}
+
+impl ChannelValue {
+    /// Returns "Gain of LON: 1.059, previously 1.023", or "Gain of LON: 1.059 ±3 %" with the error
+    /// bar's half-width instead.
+    fn accessible_name(&self) -> String {
+        let value = format!("{}: {}{}", self.name, self.text, self.unit);
+        match (&self.earlier, &self.half_width) {
+            (Some(earlier), _) => format!("{value}, previously {earlier}{}", self.unit),
+            (None, Some(half_width)) => format!("{value} {half_width}{}", self.half_width_unit),
+            (None, None) => value,
+        }
+    }
 }
 
 /// Greatest widths of the texts in a column \[pt\].
@@ -319,6 +335,8 @@ impl SideValues<'_> {
                 .half_width(scalar)
                 .map(|half| format!("±{:.0}", 100.0 * half)),
             name: format!("Gain of {name}"),
+            unit: "",
+            half_width_unit: " %",
             exact: gain.to_string(),
             scalar,
             asked: ExplainTarget::Gain(self.shown.condition.id(), channel),
@@ -353,6 +371,8 @@ impl SideValues<'_> {
             },
             half_width: half_s.map(|half_s| format!("±{:.0}", s_to_ms(half_s))),
             name: format!("Delay of {name}"),
+            unit: " ms",
+            half_width_unit: " ms",
             exact,
             scalar,
             asked: ExplainTarget::Delay(self.shown.condition.id(), channel),
@@ -370,10 +390,12 @@ impl SideValues<'_> {
         end: f32,
         commands: &mut Vec<Command>,
     ) -> f32 {
+        let accessible_name = value.accessible_name();
         let ChannelValue {
             text,
             half_width,
             name,
+            unit,
             exact,
             earlier,
             scalar,
@@ -401,14 +423,12 @@ impl SideValues<'_> {
             .with_max_x(place.right() + 3.0)
             .shrink2(vec2(0.0, 0.5));
         let response = ui.interact(area, ui.scope_id().with(&name), Sense::click());
-        let response = named(
-            response,
-            Role::Button,
-            accessible_name(&name, &text, earlier.as_deref(), half_width.as_deref()),
-        );
+        let response = named(response, Role::Button, accessible_name);
         let mut hint = exact;
         if let Some(earlier) = &earlier {
-            hint.push_str(&format!("\nwas {earlier} when the settings were opened"));
+            hint.push_str(&format!(
+                "\nwas {earlier}{unit} when the settings were opened"
+            ));
         }
         if let Some((bar, level)) = self.state.value_uncertainty().error_bar(scalar) {
             hint.push_str(&format!("\n{}", error_bar_words(bar, scalar, level)));
@@ -419,20 +439,6 @@ impl SideValues<'_> {
             .on_hover_text(hint);
         response.asks(SelectionCommand::Explain(Some(value.asked)), commands);
         right_end - row.left()
-    }
-}
-
-/// Returns "Gain of LON: 1.059, previously 1.023", or the same with the error bar's half-width instead.
-fn accessible_name(
-    name: &str,
-    text: &str,
-    earlier: Option<&str>,
-    half_width: Option<&str>,
-) -> String {
-    match (earlier, half_width) {
-        (Some(earlier), _) => format!("{name}: {text}, previously {earlier}"),
-        (None, Some(half_width)) => format!("{name}: {text} {half_width}"),
-        (None, None) => format!("{name}: {text}"),
     }
 }
 

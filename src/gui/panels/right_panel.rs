@@ -224,7 +224,7 @@ fn settings_parts(state: &State) -> Vec<LinePart> {
         parts.insert(
             0,
             LinePart {
-                text: format!("{} other", changed.len()),
+                text: format!("{} changed", counted(changed.len(), "other")),
                 is_changed: true,
             },
         );

@@ -198,7 +198,10 @@ fn steps_ui(ui: &mut Ui, palette: &Palette) {
             "1  Judge",
             "which physics models disagree with their bundle",
         ),
-        ("2  Match", "gains and delays, held where it matters"),
+        (
+            "2  Match",
+            "gains and delays that match chosen responses to flight",
+        ),
         (
             "3  Schedule",
             "one correction over airspeed, with its error bars",

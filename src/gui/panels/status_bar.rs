@@ -184,7 +184,7 @@ fn background_words(background: &Background, records: &RecordsState) -> String {
     }
     if !background.proofs.is_empty() {
         let conditions = counted(background.proofs.len(), "condition");
-        return format!("proving the gains of {conditions} …");
+        return format!("proving the gains optimal in {conditions} …");
     }
     match background.curves {
         Some(Steps { total: 0, .. }) => return "computing curves …".to_owned(),
@@ -199,7 +199,7 @@ fn background_words(background: &Background, records: &RecordsState) -> String {
     }
     if let Some(steps) = background.couplings {
         return format!(
-            "refitting couplings without each condition, {} % …",
+            "refitting couplings without each condition in turn, {} % …",
             steps.percent()
         );
     }
@@ -209,7 +209,7 @@ fn background_words(background: &Background, records: &RecordsState) -> String {
     if background.views > 0 {
         "preparing the views …".to_owned()
     } else {
-        "computing the costs of holding and releasing …".to_owned()
+        "computing the costs of holding and releasing responses …".to_owned()
     }
 }
 

@@ -177,8 +177,8 @@ impl ToastBar<'_> {
     /// Draws the button that opens or closes the list of the other messages; returns its left edge.
     fn more_ui(&self, ui: &mut Ui, more: MoreMessages, commands: &mut Vec<Command>) -> f32 {
         let (text, name) = if more.count > 0 {
-            let count = counted(more.count, "message");
-            (format!("{} more", more.count), format!("{count} more"))
+            let name = counted(more.count, "more message");
+            (format!("{} more", more.count), name)
         } else {
             ("Details".to_owned(), "Details of the message".to_owned())
         };

@@ -69,7 +69,7 @@ const STEPS: [Step; 5] = [
         title: "Flight conditions",
         words: "Click a condition, or press Up or Down, to show it. The map beside the list shows \
             the remaining J of each held response: magnitude on the left, phase on the right; \
-            faint means matched. ⚠: models are suggested as outliers.",
+            faint means matched. ⚠: suggested outliers, held responses not matched, or no result.",
     },
     Step {
         region: Region::Models,

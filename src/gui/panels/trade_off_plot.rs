@@ -86,7 +86,7 @@ pub(super) fn trade_off_ui(
     let alpha = state.study.settings.alpha_gain;
     let name = match point_at(trade_off, alpha) {
         Some(point) => format!(
-            "Trade-off of α: deviation {} %, J {}",
+            "Trade-off of α: deviation of the output gains {} %, mean J {}",
             decimals(100.0 * point.output_deviation, 1),
             decimals(point.mean_cost, 1)
         ),

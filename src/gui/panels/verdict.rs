@@ -80,12 +80,23 @@ impl VerdictRow {
 
     /// Returns the row as a sentence for screen readers.
     pub fn sentence(&self) -> String {
-        let here = Self::count_text(self.here);
-        let everywhere = Self::count_text(self.everywhere);
-        format!(
-            "{}: {here} {}, in all conditions {everywhere}",
-            self.name, self.message.text
-        )
+        let words = if self.message.text.is_empty() {
+            "–"
+        } else {
+            self.message.text.as_str()
+        };
+        let mut sentence = format!("{}: {words}", self.name);
+        if let Some(here) = self.here {
+            let here = match_count_text(here);
+            sentence.push_str(&format!(
+                "; held responses matched: {here} in this condition"
+            ));
+        }
+        if let Some(everywhere) = self.everywhere {
+            let everywhere = match_count_text(everywhere);
+            sentence.push_str(&format!(", {everywhere} in all conditions"));
+        }
+        sentence
     }
 }
 

@@ -438,6 +438,9 @@ mod tests {
             short_caution("Leads: +21 dB above 12 rad/s"),
             "⚠ +21 dB above 12 rad/s"
         );
-        assert_eq!(short_caution("No couplings"), "⚠ No couplings");
+        assert_eq!(
+            short_caution("Couplings not applied"),
+            "⚠ Couplings not applied"
+        );
     }
 }

@@ -298,7 +298,11 @@ impl ExportForm {
             return Err(Message::new("no-folder", "choose a folder"));
         }
         if self.prefix.contains(['/', '\\']) {
-            let text = "file prefix: a folder belongs in the field Folder";
+            let text = format!(
+                "file prefix: expected a name without / or \\, found \"{}\"; the folder belongs in \
+                the field Folder",
+                self.prefix
+            );
             return Err(Message::new("prefix-with-folder", text));
         }
         // The formats with this option write files for each condition.

@@ -41,7 +41,7 @@ impl PairSet {
             Self::Held => "Responses that are held, or were held since the dataset was opened",
             Self::Focused => "Response selected in the matrix",
             Self::OnAxis => "The on-axis responses of the dataset",
-            Self::All => "Every response that has a gain",
+            Self::All => "Every response of the dataset",
             Self::Picked => "Responses picked with the button beside this list",
         }
     }

@@ -180,7 +180,7 @@ fn model_row(state: &State, bundle: BundleKind, model: &Model) -> Row {
         ("states", states),
         ("mean distance [√J]", full_precision(distance)),
         ("discontinuity ratio", full_precision(ratio)),
-        ("suggested", suggested),
+        ("suggested as outlier", suggested),
     ]
 }
 
@@ -188,7 +188,7 @@ fn model_row(state: &State, bundle: BundleKind, model: &Model) -> Row {
 fn title_with_bars(state: &State, kind: TableKind) -> String {
     let mut subject = kind.name().to_owned();
     if let Some(level) = state.value_uncertainty().level() {
-        subject.push_str(&format!(", ± of {:.0} %", 100.0 * level));
+        subject.push_str(&format!(", ± at {:.0} % confidence", 100.0 * level));
     }
     title(state, &subject)
 }

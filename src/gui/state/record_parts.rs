@@ -29,7 +29,10 @@ impl ConditionRecords {
     ) -> Result<(), Message> {
         let index = self.whole_index(index);
         let Some(whole) = self.rows.get_mut(index) else {
-            return Err(Message::new("unknown-record", "there is no such record"));
+            return Err(Message::new(
+                "unknown-record",
+                "the record is no longer in the list",
+            ));
         };
         let part = part_of(whole, part_s, channels)?;
         let source = whole.table.source.clone();
@@ -80,7 +83,12 @@ impl ConditionRecords {
     ) -> Result<(), Message> {
         let row = match self.rows.get(index) {
             Some(row) if row.table.part_s.is_some() => row,
-            _ => return Err(Message::new("unknown-record", "there is no such part")),
+            _ => {
+                return Err(Message::new(
+                    "unknown-record",
+                    "the part is no longer in the list",
+                ));
+            }
         };
         let whole = &self.rows[self.whole_index(index)];
         let mut part = part_of(whole, part_s, channels)?;

@@ -30,7 +30,7 @@ impl RecordsPage {
                 name: "Fit",
                 short_name: "Fit",
                 purpose: "The selected record over time with the models' responses; the measured \
-                response, and the identified model with its confidence band",
+                frequency response, and the identified model with its confidence band",
             },
             Self::Inputs => PageWords {
                 name: "Inputs",
@@ -42,7 +42,7 @@ impl RecordsPage {
                 name: "Order",
                 short_name: "Order",
                 purpose: "Fit and poles over the model order, poles of the recommended model, \
-                and the intervals that further sweeps would bring",
+                and the confidence intervals to expect from further sweeps",
             },
             Self::Columns => PageWords {
                 name: "Columns",

@@ -292,7 +292,7 @@ const LEADS: ViewFacts = ViewFacts {
 
 const EVIDENCE: ViewFacts = ViewFacts {
     name: "Evidence",
-    purpose: "Net gains: sources of their scatter, significant differences between airspeeds, \
+    purpose: "Net gains: sources of their scatter, significant differences at equal airspeed, \
         and variables that the schedule needs",
     group: Some(ViewGroup::Schedule),
     takes_dock: true,

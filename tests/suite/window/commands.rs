@@ -264,7 +264,11 @@ fn tables_of_the_matrix_and_the_result_have_the_bars_of_their_figures() {
     let pair = pair(&window, "Q", "LON");
     let bar = |scalar: Scalar| uncertainty.bar(condition, scalar).unwrap();
     let matrix = table_of(state(&window), TableKind::Matrix);
-    assert!(matrix.title.ends_with(", ± of 90 %"), "{}", matrix.title);
+    assert!(
+        matrix.title.ends_with(", ± at 90 % confidence"),
+        "{}",
+        matrix.title
+    );
     let row = matrix
         .rows
         .iter()

@@ -233,9 +233,9 @@ fn the_dock_is_the_only_place_of_the_net_gains_and_a_double_click_doubles_it() {
     }
     show(&mut window, View::Bode);
     window.run_steps(2);
-    let height = |window: &Window| window.get_by_label("Bar of the dock").rect().top();
+    let height = |window: &Window| window.get_by_label("Enlarge the dock").rect().top();
     let low = 900.0 - 24.0 - height(&window);
-    let bar = window.get_by_label("Bar of the dock").rect();
+    let bar = window.get_by_label("Enlarge the dock").rect();
     // In the test harness, frames are 0.25 s apart, so that a double click needs a longer delay.
     window
         .ctx
@@ -256,9 +256,9 @@ fn the_dock_is_the_only_place_of_the_net_gains_and_a_double_click_doubles_it() {
     // The channels contain the net gains' parts and take the whole height.
     show(&mut window, View::Channels);
     window.run_steps(2);
-    assert!(window.query_by_label("Bar of the dock").is_none());
+    assert!(window.query_by_label("Enlarge the dock").is_none());
     show(&mut window, View::NetGain);
-    window.get_by_label("Bar of the dock");
+    window.get_by_label("Enlarge the dock");
 }
 
 #[test]
@@ -377,7 +377,7 @@ fn poles_and_assessment_show_every_plot_on_a_small_screen() {
 /// Asserts that the frames of all plots of a view lie between the page bar and the dock.
 #[track_caller]
 fn assert_whole(window: &Window, view: View, plots: usize) {
-    let dock = window.get_by_label("Bar of the dock").rect();
+    let dock = window.get_by_label("Enlarge the dock").rect();
     let figure = &state(window).display.figures[&view];
     for plot in 0..plots {
         let frame = *figure.transform(plot).expect("it is drawn").frame();

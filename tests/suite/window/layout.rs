@@ -300,6 +300,7 @@ fn a_wide_error_bar_does_not_touch_the_delay_beside_it() {
         let Some((_, half)) = label.split_once(" ±") else {
             continue;
         };
+        let half = half.trim_end_matches(" %");
         widest = widest.max(half.len());
         let name = format!("Delay of {channel}: ");
         let delay = window.get_by_label_contains(&name);

@@ -222,7 +222,7 @@ fn a_message_bar_below_a_newer_toast_is_listed_with_its_buttons() {
         .dispatch(gdcm::gui::commands::form::FormCommand::Refuse(refusal));
     window.run_steps(2);
     assert!(window.query_by_label("Reload").is_none());
-    click(&mut window, "1 message more");
+    click(&mut window, "1 more message");
     click(&mut window, "Keep the open dataset");
     assert!(bar_codes(&window).is_empty());
     window.get_by_label("Dismiss");

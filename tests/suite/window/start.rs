@@ -94,7 +94,7 @@ fn the_start_page_opens_the_real_aircraft_with_its_records() {
 fn the_menu_and_the_card_of_an_open_file_offer_both_examples() {
     let mut window = window();
     click(&mut window, "File");
-    press(&mut window, "Open the real aircraft");
+    press(&mut window, "Open the real-aircraft example");
     settle(&mut window);
     assert_eq!(state(&window).example, Some(Example::RealAircraft));
     open_by_path(&mut window, &files::small_dataset());

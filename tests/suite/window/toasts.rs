@@ -30,7 +30,7 @@ fn a_failure_stays_until_it_is_closed_and_the_others_are_listed() {
     assert_eq!(toasts(&window), ["third", "second", "first"]);
     window.get_by_label("third is refused");
     assert!(window.query_by_label("first is refused").is_none());
-    click(&mut window, "2 messages more");
+    click(&mut window, "2 more messages");
     window.get_by_label("first is refused");
     click(&mut window, "Close message: first is refused");
     assert_eq!(toasts(&window), ["third", "second"]);

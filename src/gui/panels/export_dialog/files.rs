@@ -152,7 +152,7 @@ fn total_words(state: &State, plan: &ExportPlan) -> String {
             format!("{count}, {}", size_words(plan.size() + report.html.len()))
         }
         (Some(_), None) if plan.files.is_empty() => count,
-        (Some(_), None) => format!("{count}, {} and the report", size_words(plan.size())),
+        (Some(_), None) => format!("{count}, {} without the report", size_words(plan.size())),
     }
 }
 

@@ -339,7 +339,7 @@ fn existing_words(state: &State) -> String {
         format!("{existing} of {count} files will be replaced")
     } else {
         format!(
-            "{existing} of {count} files exist and are kept; the new names get the suffix {}",
+            "existing files are kept ({existing} of {count}); the new names get the suffix {}",
             plan.suffix
         )
     }

@@ -136,6 +136,7 @@ class Agreement(Folder):
         self.assertEqual(fix.corrections, expected)
         self.assertEqual(fix.settings["band_rad_s"], [0.6, 10.0])
         self.assertEqual(fix[3].rejected, ["V+5kt"])
+        self.assertIsNone(fix.schedule.degree)
 
     def test_the_schedule_at_its_airspeeds_is_its_table(self) -> None:
         schedule = with_leads().schedule

@@ -143,9 +143,10 @@ class Schedule:
         return (lowest, highest)
 
     @property
-    def degree(self) -> int:
-        """Degree of the polynomials of airspeed."""
-        return int(self.contents["degree"])
+    def degree(self) -> Optional[int]:
+        """Degree of the polynomials of airspeed; None for a lookup table."""
+        degree = self.contents["degree"]
+        return None if degree is None else int(degree)
 
     @property
     def cautions(self) -> List[Message]:

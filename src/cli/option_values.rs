@@ -23,7 +23,7 @@ where
 pub(super) fn real_number(text: &str) -> Result<f64, String> {
     text.trim()
         .parse()
-        .map_err(|_| format!("expected a number, found {text}"))
+        .map_err(|_| format!("expected a number, found \"{text}\""))
 }
 
 pub(super) fn whole_number<const LEAST: usize, const MOST: usize>(
@@ -32,7 +32,7 @@ pub(super) fn whole_number<const LEAST: usize, const MOST: usize>(
     match text.trim().parse::<usize>() {
         Ok(number) if (LEAST..=MOST).contains(&number) => Ok(number),
         _ => Err(format!(
-            "expected a whole number from {LEAST} to {MOST}, found {text}"
+            "expected a whole number from {LEAST} to {MOST}, found \"{text}\""
         )),
     }
 }

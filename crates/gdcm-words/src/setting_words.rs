@@ -196,10 +196,10 @@ static SETTING_WORDS: [SettingWords; 30] = [
         key: "gain_objective",
         caption: "",
         label: "Objective of the gains",
-        help: "Error measure that is minimised over the gains: of the ratios, or in dB",
+        help: "Errors between net gain and delta gain G that are minimised: differences of the gains, or in dB",
         meanings: &[
-            "Gains minimise squared errors of the ratios, eq. (7)",
-            "Gains minimise squared errors in dB: a factor and its inverse count alike",
+            "Minimises squared differences of the gains, eq. (7)",
+            "Minimises squared errors in dB: a factor and its inverse count alike",
         ],
         ..NO_WORDS
     },

@@ -56,7 +56,7 @@ const CONDITION_NAMES: PlotNames = PlotNames {
 };
 const EVERY_CONDITION_NAMES: PlotNames = PlotNames {
     salt: "airspeeds",
-    label_suffix: ", plot of airspeeds",
+    label_suffix: ", plot of every condition",
     pane_suffix: " in every condition",
     sentence_suffix: " plot of every condition",
 };

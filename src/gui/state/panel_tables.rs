@@ -250,17 +250,23 @@ fn response_row(state: &State, pair: Pair) -> Row {
     let values = [
         ("G [-]", shown.and_then(|shown| shown.delta_gain(pair))),
         ("G ± [%]", gain.whole),
-        ("G ± of identification [%]", gain.from_identification),
+        (
+            "G ± from identification alone [%]",
+            gain.from_identification,
+        ),
         ("D [ms]", delta_delay_s.map(s_to_ms)),
         ("D ± [ms]", delay.whole),
-        ("D ± of identification [ms]", delay.from_identification),
+        (
+            "D ± from identification alone [ms]",
+            delay.from_identification,
+        ),
         (
             "net gain [-]",
             shown.map(|shown| shown.correction.net_gain(pair)),
         ),
         ("net gain ± [%]", net_gain.whole),
         (
-            "net gain ± of identification [%]",
+            "net gain ± from identification alone [%]",
             net_gain.from_identification,
         ),
         (
@@ -307,13 +313,19 @@ fn channel_row(state: &State, channel: Channel) -> Row {
     let values = [
         ("k [-]", correction.map(|found| found.gain(channel))),
         ("k ± [%]", gain.whole),
-        ("k ± of identification [%]", gain.from_identification),
+        (
+            "k ± from identification alone [%]",
+            gain.from_identification,
+        ),
         (
             "τ [ms]",
             correction.map(|found| s_to_ms(found.delay_s(channel))),
         ),
         ("τ ± [ms]", delay.whole),
-        ("τ ± of identification [ms]", delay.from_identification),
+        (
+            "τ ± from identification alone [ms]",
+            delay.from_identification,
+        ),
     ];
     let mut row = vec![
         ("side", side.to_owned()),

@@ -42,7 +42,7 @@ pub(super) fn across_chips_ui(
         let is_shown = state.display.frequency.across_display.roles.contains(&role);
         let face = ChipFace {
             text: role.name(),
-            name: &format!("Show {}, plot of airspeeds", role.name()),
+            name: &format!("Show {}, plot of every condition", role.name()),
             sample: Some(Sample {
                 style: palette.role_style(Role::OfAirspeed(MID_SCALE, line_of(role)), false),
                 is_shown,

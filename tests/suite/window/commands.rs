@@ -280,7 +280,7 @@ fn tables_of_the_matrix_and_the_result_have_the_bars_of_their_figures() {
     );
     let inner = bar(Scalar::NetGain(pair)).inner_half_width(0.9);
     assert_eq!(
-        cell(&matrix, row, "net gain ± of identification [%]"),
+        cell(&matrix, row, "net gain ± from identification alone [%]"),
         percent(inner)
     );
     let delay = bar(Scalar::Delay(pair)).half_width(0.9).unwrap();
@@ -297,7 +297,7 @@ fn tables_of_the_matrix_and_the_result_have_the_bars_of_their_figures() {
         percent(gain.half_width(0.9))
     );
     assert_eq!(
-        cell(&channels, row, "k ± of identification [%]"),
+        cell(&channels, row, "k ± from identification alone [%]"),
         percent(gain.inner_half_width(0.9))
     );
 }

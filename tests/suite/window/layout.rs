@@ -99,11 +99,11 @@ fn a_low_window_has_one_output_over_time() {
         show(&mut window, View::Records);
         wait_until(&mut window, "the records", |window| {
             window
-                .query_all_by_label_contains(" at the cursor [")
+                .query_all_by_label_contains("] at the cursor: ")
                 .next()
                 .is_some()
         });
-        let shown = window.query_all_by_label_contains(" at the cursor [");
+        let shown = window.query_all_by_label_contains("] at the cursor: ");
         assert_eq!(shown.count(), charts, "{size}");
     }
 }

@@ -320,7 +320,7 @@ mod tests {
                 {"name": "nominal", "role": "nominal", "A": [[-1.0]], "B": [[1.0]], "C": [[1.0]], "D": [[0.0]]},
                 {"name": "roll+5", "role": "perturbed", "perturbation": {"roll_deg": 5.0}, "states": ["p"],
                  "A": [[-2.0]], "B": [[1.0]], "C": [[1.0]], "D": [[0.0]], "input_delays_s": [0.02]},
-                {"name": "inertia run", "parameter": {"name": "Ixx", "delta": 0.1},
+                {"name": "inertia run", "parameter": {"name": "Ixx", "delta": 5, "unit": "%"},
                  "A": [[-3.0]], "B": [[1.0]], "C": [[1.0]], "D": [[0.0]]}],
             "identified_models": [{"name": "measured", "method": "CIFER", "source": {"note": "flight 12"},
                 "frequency_response": {"omega_rad_s": [0.5, 1.0, 2.0], "re": [[[1.0, 0.9, 0.5]]], "im": [[[0.0, -0.1, -0.4]]],
@@ -344,7 +344,7 @@ mod tests {
         let before = read(DATASET.as_bytes(), "one.json");
         let text = written(&before.models);
         let json: serde_json::Value = serde_json::from_slice(&text).unwrap();
-        let measured = &json["models"][2];
+        let measured = &json["models"][3];
         assert_eq!(
             measured["frequency_response"]["valid_band_rad_s"],
             serde_json::json!([[[0.5, 1.5]]])
@@ -369,14 +369,14 @@ mod tests {
             assert_eq!(before.draft.moved, again.draft.moved);
         }
         assert_eq!(
-            again.models[2]
+            again.models[3]
                 .draft
                 .source
                 .as_ref()
                 .unwrap()
                 .variable
                 .as_deref(),
-            Some("models{3}")
+            Some("models{4}")
         );
     }
 

@@ -26,17 +26,17 @@ pub enum UnitReason {
     /// The unit does not affect the interpretation.
     #[error("")]
     NotNeeded,
-    #[error(", its unit is {0}")]
+    #[error(", and its unit is {0}")]
     Unit(String),
     /// The quantity implies the unit.
     #[error(", which implies the unit")]
     Implied,
-    #[error(", its unit is not dB")]
+    #[error(", and its unit is not dB")]
     NotDecibel,
-    #[error(", some of its numbers are negative")]
+    #[error(", and some of its numbers are negative")]
     NegativeNumbers,
-    #[error(", some of its numbers are above 1")]
+    #[error(", and some of its numbers are above 1")]
     NumbersAboveOne,
-    #[error(", its unit is γ, so the values are squared")]
+    #[error(", and its unit is γ, so that the values are squared")]
     NotSquared,
 }

@@ -5,7 +5,7 @@ pub mod column_place;
 pub mod damage;
 pub mod found_content;
 pub mod line_fault;
-pub mod matlab_fault;
+pub mod matlab_value_fault;
 pub mod octave_fault;
 pub mod unread;
 pub mod unsupported_content;

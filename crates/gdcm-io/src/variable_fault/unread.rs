@@ -3,7 +3,7 @@
 
 use crate::variable_fault::VariableFault;
 use crate::variable_fault::damage::Damage;
-use crate::variable_fault::matlab_fault::MatlabFault;
+use crate::variable_fault::matlab_value_fault::MatlabFault;
 use crate::variable_fault::unsupported_content::UnsupportedContent;
 
 /// Reason why a value could not be read; the message contains its remedy.
@@ -49,7 +49,7 @@ pub enum Unread {
     Enumeration,
     #[error("functions cannot be read; in MATLAB, save the values that they return")]
     Function,
-    #[error("empty objects cannot be read; in MATLAB, save their data as numbers or text")]
+    #[error("empty objects cannot be read; in MATLAB, remove the variable, or save [] instead")]
     Empty,
     #[error("expected an HDF5 dataset or group; save the values as a dataset")]
     NeitherDatasetNorGroup,

@@ -93,7 +93,9 @@ impl UnsupportedContent {
             }
             Self::NumpyNumbers { .. } => "save them as float64",
             Self::NumpyTimes { .. } => "save them as float64, with the unit in the name",
-            Self::PythonObjects => "save plain arrays, one for each name",
+            Self::PythonObjects => {
+                "save each array under its own name, such as numpy.savez(file, A=A, B=B)"
+            }
             Self::NpyVersion { .. } => "save a plain array with numpy.save",
             Self::DataAfterArray => {
                 "save a single array in each .npy file, or several with numpy.savez"

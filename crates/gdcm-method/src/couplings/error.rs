@@ -36,7 +36,8 @@ pub enum CouplingError {
     },
     /// The loop cannot be closed: `I - K H` is singular.
     #[error(
-        "the feedback makes the loop of condition {condition} singular at {} rad/s",
+        "the feedback makes the loop of condition {condition} singular at {} rad/s; choose mixing \
+        without feedback",
         number(*omega_rad_s)
     )]
     SingularLoop {

@@ -36,8 +36,10 @@ impl Provenance {
         );
         parts.extend(self.made.as_ref().map(|date| format!("made {date}")));
         parts.extend(self.sha256.as_ref().map(|hash| format!("SHA-256 {hash}")));
-        if !self.records.is_empty() {
-            parts.push(format!("from the records {}", self.records.join(", ")));
+        match self.records.as_slice() {
+            [] => {}
+            [record] => parts.push(format!("from the record {record}")),
+            records => parts.push(format!("from the records {}", records.join(", "))),
         }
         parts.extend(self.note.clone());
         if !self.unused.is_empty() {
@@ -47,7 +49,7 @@ impl Provenance {
     }
 
     /// Returns the provenance with its preposition: "from models/roll+5.mat, variable sys", "from
-    /// the records sweep_1".
+    /// the record sweep_1".
     pub fn origin_words(&self) -> String {
         let words = self.words();
         if self.file.is_none() && words.starts_with("from ") {
@@ -73,6 +75,6 @@ mod tests {
             records: vec!["sweep_1".to_owned()],
             ..Provenance::default()
         };
-        assert_eq!(records.origin_words(), "from the records sweep_1");
+        assert_eq!(records.origin_words(), "from the record sweep_1");
     }
 }

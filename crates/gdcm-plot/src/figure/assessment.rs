@@ -13,7 +13,7 @@ use gdcm_study::results::assessment_table::{
 };
 use gdcm_words::assessment::not_assessed_text;
 
-pub use super::change_table::{ChangeColumn, ChangeTable};
+pub use super::cost_change_table::{ChangeColumn, ChangeTable};
 pub use super::evidence::evidence_figure;
 
 use super::axis::Axis;

@@ -30,10 +30,10 @@ pub enum ScalingError {
     #[error("there are no flight records")]
     NoSegments,
     /// A segment, by index from 0, has other channel counts than the first.
-    #[error("part {} of the flight records differs from the first in its number of channels", .0 + 1)]
+    #[error("segment {} of the flight records differs from the first in its number of channels", .0 + 1)]
     ChannelsDiffer(usize),
     /// A sample or its square is not finite in the segment with this index, from 0.
-    #[error("part {} of the flight records has values that are not finite or too large; check the samples", .0 + 1)]
+    #[error("segment {} of the flight records has samples that are infinite, NaN or too large; check them", .0 + 1)]
     NotFinite(usize),
     /// The channel is constant in every segment.
     #[error("{role} {} does not move in any record: leave the channel out", index + 1)]

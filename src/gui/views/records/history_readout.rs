@@ -110,7 +110,7 @@ impl ChannelReadout<'_> {
             parts.push(format!("{} {}", role.name(), value_text(*value, digits)));
         }
         format!(
-            "{} at the cursor [{}]: {}",
+            "{} [{}] at the cursor: {}",
             self.channel.name,
             self.channel.unit,
             parts.join(", ")

@@ -552,7 +552,9 @@ mod opaque_tests {
         ));
         assert_eq!(
             command,
-            "[num,den,Ts] = tfdata(sys); save out.mat num den Ts"
+            "[num,den] = tfdata(sys); Ts = sys.Ts; InputDelay = sys.InputDelay; \
+            OutputDelay = sys.OutputDelay; IODelay = sys.IODelay; TimeUnit = sys.TimeUnit; \
+            save out.mat num den Ts InputDelay OutputDelay IODelay TimeUnit"
         );
     }
 

@@ -26,45 +26,86 @@ fn export_command(class: &str, variable: &str) -> String {
     // Empty if the file gives the value no name.
     let sys = if variable.is_empty() { "x" } else { variable };
     let (assignment, names) = match class {
-        "ss" => (
-            format!("[A,B,C,D] = ssdata({sys}); Ts = {sys}.Ts;"),
-            "A B C D Ts",
+        "ss" => with_properties(
+            &format!("[A,B,C,D] = ssdata({sys});"),
+            "A B C D",
+            sys,
+            &["Ts", "InputDelay", "OutputDelay", "TimeUnit"],
         ),
-        "idss" | "idgrey" => (
-            format!("[A,B,C,D,K] = idssdata({sys}); Ts = {sys}.Ts;"),
-            "A B C D K Ts",
+        "idss" | "idgrey" => with_properties(
+            &format!("[A,B,C,D,K] = idssdata({sys});"),
+            "A B C D K",
+            sys,
+            &["Ts", "InputDelay", "OutputDelay", "TimeUnit"],
         ),
-        "tf" | "idtf" => (format!("[num,den,Ts] = tfdata({sys});"), "num den Ts"),
-        "zpk" => (format!("[z,p,k,Ts] = zpkdata({sys});"), "z p k Ts"),
-        "frd" | "idfrd" => (
-            format!("H = {sys}.ResponseData; w = {sys}.Frequency; unit = {sys}.FrequencyUnit;"),
+        "tf" | "idtf" => with_properties(
+            &format!("[num,den] = tfdata({sys});"),
+            "num den",
+            sys,
+            &["Ts", "InputDelay", "OutputDelay", "IODelay", "TimeUnit"],
+        ),
+        "zpk" => with_properties(
+            &format!("[z,p,k] = zpkdata({sys});"),
+            "z p k",
+            sys,
+            &["Ts", "InputDelay", "OutputDelay", "IODelay", "TimeUnit"],
+        ),
+        "frd" => with_properties(
+            &frequency_data(sys),
             "H w unit",
+            sys,
+            &["InputDelay", "OutputDelay", "IODelay", "TimeUnit"],
+        ),
+        "idfrd" => with_properties(
+            &frequency_data(sys),
+            "H w unit",
+            sys,
+            &["InputDelay", "OutputDelay", "TimeUnit"],
         ),
         "iddata" => (
             format!("u = {sys}.InputData; y = {sys}.OutputData; Ts = {sys}.Ts;"),
-            "u y Ts",
+            "u y Ts".to_owned(),
         ),
-        "timeseries" => (format!("t = {sys}.Time; y = {sys}.Data;"), "t y"),
-        "string" | "categorical" => (format!("text = cellstr({sys});"), "text"),
-        "datetime" => (format!("t = posixtime({sys});"), "t"),
-        "duration" => (format!("t = seconds({sys});"), "t"),
+        "timeseries" => (format!("t = {sys}.Time; y = {sys}.Data;"), "t y".to_owned()),
+        "string" | "categorical" => (format!("text = cellstr({sys});"), "text".to_owned()),
+        "datetime" => (format!("t = posixtime({sys});"), "t".to_owned()),
+        "duration" => (format!("t = seconds({sys});"), "t".to_owned()),
         "table" => (
             format!("data = table2struct({sys}, 'ToScalar', true);"),
-            "data",
+            "data".to_owned(),
         ),
         "timetable" => (
             format!("data = table2struct(timetable2table({sys}), 'ToScalar', true);"),
-            "data",
+            "data".to_owned(),
         ),
         "containers.Map" => (
             format!("names = keys({sys}); data = values({sys});"),
-            "names data",
+            "names data".to_owned(),
         ),
-        "function_handle" => (format!("text = func2str({sys});"), "text"),
+        "function_handle" => (format!("text = func2str({sys});"), "text".to_owned()),
         // Any other class: its properties as fields.
-        _ => (format!("data = struct({sys});"), "data"),
+        _ => (format!("data = struct({sys});"), "data".to_owned()),
     };
     format!("{assignment} save out.mat {names}")
+}
+
+fn frequency_data(sys: &str) -> String {
+    format!("H = {sys}.ResponseData; w = {sys}.Frequency; unit = {sys}.FrequencyUnit;")
+}
+
+/// Extends an assignment, and the names that it defines, by properties of a system, which its
+/// matrices do not contain.
+fn with_properties(
+    assignment: &str,
+    names: &str,
+    sys: &str,
+    properties: &[&str],
+) -> (String, String) {
+    let mut statements = assignment.to_owned();
+    for property in properties {
+        statements.push_str(&format!(" {property} = {sys}.{property};"));
+    }
+    (statements, format!("{names} {}", properties.join(" ")))
 }
 
 #[cfg(test)]
@@ -72,8 +113,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_state_space_model_is_saved_as_its_matrices() {
-        let command = "[A,B,C,D] = ssdata(sys); Ts = sys.Ts; save out.mat A B C D Ts";
+    fn a_state_space_model_is_saved_with_its_delays() {
+        let command = "[A,B,C,D] = ssdata(sys); Ts = sys.Ts; InputDelay = sys.InputDelay; \
+            OutputDelay = sys.OutputDelay; TimeUnit = sys.TimeUnit; \
+            save out.mat A B C D Ts InputDelay OutputDelay TimeUnit";
         assert_eq!(export_command("ss", "sys"), command);
     }
 }

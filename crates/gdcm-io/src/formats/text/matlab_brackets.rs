@@ -1,7 +1,7 @@
 //! Open brackets in a MATLAB or Octave statement that is skipped: they decide where the statement
 //! ends, and whether a quotation mark begins a string.
 
-use crate::formats::text::matlab_value_error::{MOST_NESTED, Position};
+use crate::formats::text::matlab_value_position::{MOST_NESTED, Position};
 use crate::reading_budget::{NO_VARIABLE, VariableFault};
 use crate::variable_fault::line_fault::LineFault;
 

@@ -2,10 +2,10 @@
 //!
 //! A model, such as `ss(A, B, C, D)`, becomes a struct with the arguments as its fields.
 
-use crate::formats::text::matlab_value_error::{Position, ValueError, refused};
+use crate::formats::text::matlab_value_position::{Position, ValueError, refused};
 use crate::formats::variables::{Array, StructArray, Value};
 use crate::reading_budget::{NO_VARIABLE, ReadingBudget};
-use crate::variable_fault::matlab_fault::MatlabFault;
+use crate::variable_fault::matlab_value_fault::MatlabFault;
 
 /// Numbers of rows or columns from this limit on are rejected; all integers below it are exact as
 /// floats.

@@ -9,10 +9,10 @@
 use crate::formats::text::lines::excerpt;
 use crate::formats::text::matlab_brackets::OpenBrackets;
 use crate::formats::text::matlab_number_syntax::{is_digit, past_exponent, past_mantissa};
-use crate::formats::text::matlab_value_error::{MOST_NESTED, Position, ValueError, refused};
+use crate::formats::text::matlab_value_position::{MOST_NESTED, Position, ValueError, refused};
 use crate::reading_budget::{NO_VARIABLE, ReadingBudget, VariableFault};
 use crate::variable_fault::line_fault::LineFault;
-use crate::variable_fault::matlab_fault::MatlabFault;
+use crate::variable_fault::matlab_value_fault::MatlabFault;
 
 pub(super) fn is_name_character(character: char) -> bool {
     character.is_alphanumeric() || character == '_'

@@ -6,11 +6,11 @@
 use crate::formats::element_order::first_index_fastest;
 use crate::formats::text::matlab_functions::{Call, Function};
 use crate::formats::text::matlab_scanner::{Number, Scanner};
-use crate::formats::text::matlab_value_error::{MOST_NESTED, Position, ValueError, refused};
+use crate::formats::text::matlab_value_position::{MOST_NESTED, Position, ValueError, refused};
 use crate::formats::text::matlab_workspace::Workspace;
 use crate::formats::variables::{Array, CellArray, ElementKind, TextArray, Value};
 use crate::reading_budget::{NO_VARIABLE, ReadingBudget, VariableFault};
-use crate::variable_fault::matlab_fault::MatlabFault;
+use crate::variable_fault::matlab_value_fault::MatlabFault;
 
 /// Operators within brackets if blanks surround them. A sign with a blank before but not after it
 /// begins the next element: `[1 -2]`.

@@ -11,11 +11,11 @@ use crate::formats::text::encoding::refuse_binary;
 use crate::formats::text::lines::excerpt;
 use crate::formats::text::matlab_scanner::{Scanner, begins_name, is_name_character};
 use crate::formats::text::matlab_statement_values::ValueReader;
-use crate::formats::text::matlab_value_error::{Position, ValueError, refused};
+use crate::formats::text::matlab_value_position::{Position, ValueError, refused};
 use crate::formats::text::matlab_workspace::Workspace;
 use crate::formats::variables::{Value, Variable};
 use crate::reading_budget::{NO_VARIABLE, ReadingBudget, VariableFault};
-use crate::variable_fault::matlab_fault::MatlabFault;
+use crate::variable_fault::matlab_value_fault::MatlabFault;
 use crate::variable_fault::unread::Unread;
 
 /// Words that begin a block, whose statements may be executed any number of times.

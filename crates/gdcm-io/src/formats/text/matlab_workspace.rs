@@ -5,10 +5,10 @@
 
 use std::collections::HashMap;
 
-use crate::formats::text::matlab_value_error::{MOST_NESTED, Position, ValueError, refused};
+use crate::formats::text::matlab_value_position::{MOST_NESTED, Position, ValueError, refused};
 use crate::formats::variables::{StructArray, Value, Variable};
 use crate::reading_budget::{NO_VARIABLE, ReadingBudget, VariableFault};
-use crate::variable_fault::matlab_fault::MatlabFault;
+use crate::variable_fault::matlab_value_fault::MatlabFault;
 use crate::variable_fault::unread::Unread;
 
 /// Variables and fields assigned so far.

@@ -31,7 +31,7 @@ mod matlab_number_syntax;
 mod matlab_scanner;
 mod matlab_statement_values;
 mod matlab_statements;
-mod matlab_value_error;
+mod matlab_value_position;
 mod matlab_workspace;
 mod matrix_lines;
 mod matrix_text;

@@ -16,8 +16,8 @@ const CHANNEL_DELAYS: &str = "call it input_delays_s or output_delays_s (a numbe
     channel, in s), or rename it if it is not a delay";
 /// Remedy for internal delays, and for response delays that are not the sum of an input delay and
 /// an output delay.
-const APPROXIMATE: &str =
-    "approximate them first: sys = pade(sys, 3); in discrete time: sys = absorbDelay(sys)";
+const APPROXIMATE: &str = "replace them by states first: in continuous time sys = pade(sys, 3), in \
+    discrete time sys = absorbDelay(sys)";
 
 /// Reason why a model or a record cannot be read, with the place among the variables.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 //! Errors from reading a value in MATLAB or Octave statements, with their position in the text.
 
 use crate::reading_budget::VariableFault;
-use crate::variable_fault::matlab_fault::MatlabFault;
+use crate::variable_fault::matlab_value_fault::MatlabFault;
 
 /// Maximum nesting depth of brackets and values, which are read recursively.
 pub(super) const MOST_NESTED: usize = 64;

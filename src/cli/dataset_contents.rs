@@ -127,7 +127,8 @@ fn order_words(models: &[Model]) -> String {
     words.join(", ")
 }
 
-/// Returns the sample times and delays in each bundle, with the models that have them (M2a).
+/// Returns the sample times and delays in each bundle, with the models that have them (M2a:
+/// docs/method.md). Omits models in continuous time without delays.
 fn timings(dataset: &Dataset) -> String {
     let mut text = String::new();
     for condition in dataset.conditions() {

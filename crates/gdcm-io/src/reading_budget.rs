@@ -91,6 +91,7 @@ impl<'p> ReadingBudget<'p> {
     pub fn take(&self, count: u64, size: u64, variable: &str) -> Result<(), VariableFault> {
         let memory = self.memory.get().saturating_add(count.saturating_mul(size));
         if memory > self.most_memory {
+            // A cancelled reader is reported as stopped, not as too large.
             self.work(0, variable)?;
             return Err(VariableFault::TooLarge {
                 variable: variable.to_owned(),

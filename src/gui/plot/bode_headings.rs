@@ -9,7 +9,9 @@
 //!
 //! J is the cost of the response's mismatch, before and after the correction (M4: docs/method.md).
 //! Leads are filters that advance the phase (M15: docs/lead.md); their price is the magnitude that
-//! they add where the curves end (`InvalidRegion`). The last text is the verdict on the correction.
+//! they add at the frequency at which the curves end, above the band and thus beyond the range in
+//! which the corrected model is valid ([`InvalidRegion`](super::bode_scene::InvalidRegion)).
+//! "matched" is the verdict on the correction.
 
 use egui::{Align2, Rect, Ui, pos2};
 use egui_plot::{PlotPoint, PlotTransform};
@@ -171,6 +173,7 @@ impl BodeHeadings<'_> {
     /// without leads.
     fn price_label(&self, transform: &PlotTransform) -> Option<EndLabel> {
         let [with_db, without_db] = self.scene.invalid?.ends_db?;
+        // Only the height is used.
         let middle = PlotPoint::new(0.0, 0.5 * (with_db + without_db));
         let at = transform.position_from_point(&middle);
         Some(EndLabel {
@@ -211,7 +214,7 @@ impl BodeHeadings<'_> {
 }
 
 /// Returns the magnitude added by the leads as text for the heading above the magnitudes; `None`
-/// above the phases, without leads, or if the right margin names the roles and the price
+/// above the phases, without leads, or if the right margin names the roles, and thus also the price
 /// (`pane_labels`).
 fn price_in_heading(scene: &BodeScene<'_>, pane: Pane) -> Option<String> {
     if pane != Pane::Magnitude || scene.names_roles {

@@ -37,14 +37,24 @@ pub fn is_entered(ui: &Ui, field: &Response) -> bool {
     field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter))
 }
 
+/// Returns the id of the text field that [`entry_ui`] draws under this name, to focus it.
+pub fn entry_field_id(name: &str) -> Id {
+    entry_id(name).with("field")
+}
+
+/// Returns the id under which an entry's unfinished text is stored.
+fn entry_id(name: &str) -> Id {
+    Id::unique(("entry", name))
+}
+
 /// Draws a text field with an accessible name and `value`; returns the typed text after Enter or
 /// when the focus leaves, `None` if it equals `value` or Escape was pressed.
 pub fn entry_ui(ui: &mut Ui, name: &str, value: &str, hint: &str, width: f32) -> Option<String> {
-    let id = Id::unique(("entry", name));
+    let id = entry_id(name);
     let edited = ui.data(|data| data.get_temp::<String>(id));
     let mut text = edited.unwrap_or_else(|| value.to_owned());
     let edit = TextEdit::singleline(&mut text)
-        .id(id.with("field"))
+        .id(entry_field_id(name))
         .hint_text(hint);
     let response = ui.add_sized(vec2(width, ENTRY_HEIGHT), edit);
     name_text_field(&response, name, &text);

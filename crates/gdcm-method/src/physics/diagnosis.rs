@@ -3,9 +3,10 @@
 //! A parameter's value `z` is its change divided by the change that the engineer considers
 //! plausible, its *plausible standard deviation*, which is also its prior standard deviation. A
 //! *score* is the misfit of conditions that are left out of the fit, its *ratio* relative to the
-//! score without parameters (`score`). A parameter is *named*, as one that would have to move, if
-//! its value differs from zero and helps to predict left-out conditions; the *verdict* states how
-//! much all parameters explain together (`verdict`).
+//! score without parameters (`score`). The *stepwise list* adds the parameters one by one, each
+//! time the one with which the ratio is lowest. A parameter is *named*, as one that would have to
+//! move, if its value differs from zero and helps to predict left-out conditions; the *verdict*
+//! states how much all parameters explain together (`verdict`).
 
 use nalgebra::DVector;
 
@@ -70,7 +71,7 @@ impl ParameterDiagnosis {
     }
 
     /// Returns whether the parameter acts like a channel gain or delay, so that its value rests on
-    /// the delay prior.
+    /// the prior of the channel delays (step 7 in `physics`).
     pub fn acts_like_channels(&self) -> bool {
         self.channels_can_take
             .is_some_and(|share| share > ACTS_LIKE_CHANNELS)
@@ -253,7 +254,7 @@ impl Findings<'_> {
                 .iter()
                 .position(|&fitted| fitted == parameter);
             parameters.push(match fitted_index {
-                Some(index) => self.fitted_parameter(parameter, index),
+                Some(fitted_index) => self.fitted_parameter(parameter, fitted_index),
                 None => ParameterDiagnosis {
                     z,
                     half_width: None,
@@ -271,46 +272,47 @@ impl Findings<'_> {
         parameters
     }
 
-    /// Returns the diagnosis for a fitted parameter; `index` is its index among the fitted
-    /// parameters.
-    fn fitted_parameter(&self, parameter: usize, index: usize) -> ParameterDiagnosis {
+    /// Returns the diagnosis for a fitted parameter. `parameter` is its index among all parameters,
+    /// `fitted_index` its index among the fitted ones.
+    fn fitted_parameter(&self, parameter: usize, fitted_index: usize) -> ParameterDiagnosis {
         let identifiability = self.identifiability;
-        let learned = identifiability.learned[index];
+        let learned = identifiability.learned[fitted_index];
         let facts = NamingFacts {
             conditions: self.equations.count_conditions_with_data(),
             explained: self.scores.map(Scores::explained),
             z: self.fit.z[parameter],
-            half_width: self.intervals.half_widths.get(index).copied(),
+            half_width: self.intervals.half_widths.get(fitted_index).copied(),
             learned,
             gain: self.scores.and_then(|scores| scores.gain_of(parameter)),
         };
         ParameterDiagnosis {
             z: facts.z,
             half_width: facts.half_width,
-            variance: Some(self.intervals.variances[index]),
-            ratio_alone: self.scores.map(|scores| scores.alone[index]),
+            variance: Some(self.intervals.variances[fitted_index]),
+            ratio_alone: self.scores.map(|scores| scores.alone[fitted_index]),
             step: self.scores.and_then(|scores| scores.step_of(parameter)),
             gain: facts.gain,
             learned: Some(learned),
-            channels_can_take: identifiability.channels_can_take[index],
-            strongest_pair: identifiability.strongest_pair(index, &self.fit.fitted),
+            channels_can_take: identifiability.channels_can_take[fitted_index],
+            strongest_pair: identifiability.strongest_pair(fitted_index, &self.fit.fitted),
             why_not_named: facts.why_not_named(),
         }
     }
 
-    /// Returns a parameter's value from a single condition by the formula of [`ValueHere`]; `index`
-    /// is its index among the fitted parameters. `None` if the condition has too little information
-    /// about it.
-    fn value_here(&self, condition: usize, index: usize) -> Option<ValueHere> {
+    /// Returns a parameter's value from a single condition by the formula of [`ValueHere`];
+    /// `fitted_index` is its index among the fitted parameters. `None` if the condition has too
+    /// little information about it.
+    fn value_here(&self, condition: usize, fitted_index: usize) -> Option<ValueHere> {
         let reduced = &self.equations.reduced[condition];
-        let information = reduced.matrix[(index, index)];
+        let information = reduced.matrix[(fitted_index, fitted_index)];
         if information.is_nan() || information <= LEAST_INFORMATION {
             return None;
         }
         let x = self.shared_values();
-        let residual = reduced.right[index] - reduced.matrix.row(index).transpose().dot(&x);
+        let row = reduced.matrix.row(fitted_index).transpose();
+        let residual = reduced.right[fitted_index] - row.dot(&x);
         Some(ValueHere {
-            z: x[index] + residual / information,
+            z: x[fitted_index] + residual / information,
             sd: information.sqrt().recip(),
         })
     }
@@ -340,8 +342,8 @@ impl Findings<'_> {
                 z_without[parameter] = z;
             }
             let mut z_here = vec![None; z_without.len()];
-            for (index, &parameter) in self.fit.fitted.iter().enumerate() {
-                z_here[parameter] = self.value_here(place, index);
+            for (fitted_index, &parameter) in self.fit.fitted.iter().enumerate() {
+                z_here[parameter] = self.value_here(place, fitted_index);
             }
             conditions.push(ConditionDiagnosis {
                 id: condition.id,

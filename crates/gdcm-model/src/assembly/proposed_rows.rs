@@ -22,7 +22,8 @@ use crate::names::name_pattern::{read_name, unread_offsets};
 /// 1. Read the facts in the file and in its name.
 /// 2. Number the conditions if no file or name gives a condition.
 /// 3. Propose the nominal model of each condition.
-/// 4. Apply the rules for single models.
+/// 4. Apply the rules for single models. A rule changes only its own model: step 3 does not take
+///    account of the roles that rules give.
 pub(super) fn proposed_rows(models: &[FoundModel], rules: &Rules) -> Vec<Row> {
     // Step 1.
     let mut rows: Vec<Row> = models
@@ -47,11 +48,13 @@ pub(super) fn proposed_rows(models: &[FoundModel], rules: &Rules) -> Vec<Row> {
 /// Proposes a row from a file's contents and from its name, folders and variable.
 ///
 /// 1. Condition, airspeed, altitude, mass, trim offsets and moved parameter: from the contents, or
-///    else from the name. Model name and method: from the name, or else from the contents.
+///    else from the name. Altitude and weight class: from the name. Method: from the name, or else
+///    from the contents.
 /// 2. Role: as the file states it, or else the name, or else as the model implies; a run with the
 ///    nominal role becomes perturbed.
+/// 3. Model name: from the file, folder or variable name, or else `default_name`.
 fn proposed_row(model: &FoundModel, models: &[FoundModel], rules: &Rules) -> Row {
-    // Step 1, with the role that the file or its name states.
+    // Step 1, with the role that the file or its name states, and the model name in its name.
     let facts = &model.facts;
     let offsets = trim_offsets(&model.draft.origin);
     let path = path_without_extension(model.file());
@@ -76,6 +79,7 @@ fn proposed_row(model: &FoundModel, models: &[FoundModel], rules: &Rules) -> Row
         perturbation: offsets.clone(),
         parameter: match &model.draft.moved {
             Some(MovedParameters::Run(change)) => Some(change.clone()),
+            // `parameter` is the single parameter moved in a run.
             Some(MovedParameters::Rerun(_)) => None,
             None => from_name.parameter,
         },
@@ -104,6 +108,7 @@ fn proposed_row(model: &FoundModel, models: &[FoundModel], rules: &Rules) -> Row
     if row.parameter.is_some() && row.role == Some(RowRole::Nominal) {
         row.role = Some(RowRole::Perturbed);
     }
+    // Step 3.
     if row.name.is_empty() {
         row.name = default_name(model, models, rules, &path);
     }

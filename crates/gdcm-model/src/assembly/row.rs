@@ -16,8 +16,10 @@ pub struct Row {
     pub name: String,
     /// True airspeed \[kt\].
     pub airspeed_kt: Option<f64>,
+    /// Altitude class: "low", "high".
     pub altitude: Option<String>,
     pub altitude_ft: Option<f64>,
+    /// Weight class: "low", "high", "light", "heavy".
     pub weight: Option<String>,
     pub mass_kg: Option<f64>,
     pub method: Option<String>,

@@ -1,4 +1,4 @@
-//! Possible faults of a dataset draft, each with its location.
+//! Possible faults of a dataset draft (a dataset before its checks), each with its location.
 
 use super::band::BandError;
 use super::condition::ConditionError;
@@ -94,7 +94,7 @@ impl DraftError {
     }
 }
 
-/// An unusual but harmless property in a dataset draft, with its place.
+/// An unusual but harmless property in a dataset draft, with its location.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Warning {
     pub place: Location,

@@ -1,6 +1,15 @@
 //! Settings table: name, key in files, command-line option, allowed values and place of the window
 //! control. Undo, decision comparison, refusals, the report, the command line and the window use
-//! it. The crate `gdcm-words` contains the captions and help texts.
+//! it. The table contains the words for values ("delays too"), the crate `gdcm-words` the controls'
+//! captions and help texts. `setting.rs` explains two rows and every field:
+//!
+//! ```text
+//! bare              argument that the option has if none is given
+//! Words::new(a, b)  word on the command line, word in a sentence and in the window
+//! nothing, on       the words for no value; the number that the argument "on" sets
+//! place             Slider, Top: above the settings table of the window;  Line: in it
+//!                   Beside: on the previous setting's line;  Elsewhere: outside the panel
+//! ```
 //!
 //! A value outside its range is refused (`docs/limits.md`); a range is not a recommendation. The
 //! step of a control is the change in the displayed value for each point dragged.
@@ -361,7 +370,8 @@ pub static DELAY_UPPER: Setting = Setting {
     ..DEFAULT
 };
 
-/// Maximum mismatch around a loop \[dB\] up to which constrained gains count as consistent.
+/// Maximum mismatch \[dB\] up to which constrained gains around a loop count as consistent (M8:
+/// docs/method.md). A *loop* is a closed chain of responses; each shares a channel with the next.
 pub static AGREEMENT: Setting = Setting {
     name: "loop tolerance",
     key: "agreement_db",
@@ -612,6 +622,7 @@ pub static SCHEDULE_DELAYS: Setting = Setting {
             Words::new("never", "no delays"),
         ],
         get: |settings| settings.schedule_delays.index(),
+        // Also sets the flag for earlier program versions.
         set: |settings, index| settings.set_delay_scheduling(DelayScheduling::ALL[index]),
     },
     control: Control {

@@ -272,7 +272,7 @@ mod tests {
             &rule("X", &["#9", "AZ (down)"]),
             ChannelSide::Output,
         );
-        assert_eq!(other, [0], "rule b resolves the other alias");
+        assert_eq!(other, [0], "rule A2 resolves the other alias");
         let missing = candidates(
             &table(&["a z", "X"]),
             &rule("X", &["#9", "az"]),

@@ -2,7 +2,7 @@
 //! two are settings of CT-PBSID: the past window p and the pole a of its Laguerre projections
 //! (M14.3: docs/identification.md).
 
-use egui::{Grid, Id, Ui};
+use egui::{Grid, Ui};
 
 use gdcm_model::units::{number, six_digits};
 use gdcm_sysid::identification::SearchSpace;
@@ -16,7 +16,7 @@ use crate::gui::commands::command::Command;
 use crate::gui::commands::form::FormCommand;
 use crate::gui::commands::records::RecordsCommand;
 use crate::gui::widgets::palette::Palette;
-use crate::gui::widgets::text_fields::entry_ui;
+use crate::gui::widgets::text_fields::{entry_field_id, entry_ui};
 use crate::message::Message;
 
 const FIELD_WIDTH: f32 = 150.0;
@@ -42,7 +42,8 @@ impl SearchList {
         }
     }
 
-    /// Describes the values that are searched if the field is empty.
+    /// Describes the values that are searched if the field is empty (M14.9 and M14.13:
+    /// docs/identification.md). [`HIGHEST_ORDER`] and [`LONGEST_PAST`] limit only typed values.
     fn default_values(self) -> &'static str {
         match self {
             Self::Orders => "automatic, within 1 to 24",
@@ -102,7 +103,7 @@ pub(super) fn settings_summary(page: Page<'_>) -> FoldSummary {
 }
 
 /// Draws the settings; with an empty field, the identification chooses the values. If a caution's
-/// button has requested a field, scrolls to it and focuses it, once.
+/// button has requested a field, scrolls to the end of the settings and focuses the field, once.
 pub(super) fn search_settings_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let palette = page.palette;
     let focused = page.state.records.advanced_field;
@@ -121,8 +122,8 @@ pub(super) fn search_settings_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec
     if let Some(name) = focused {
         ui.scroll_to_cursor(None);
         if name != REFERENCES {
-            let entry = Id::unique(("entry", field_name(name)));
-            ui.memory_mut(|memory| memory.request_focus(entry.with("field")));
+            let field = entry_field_id(&field_name(name));
+            ui.memory_mut(|memory| memory.request_focus(field));
         }
         commands.push(RecordsCommand::AdvancedFocused.into());
     }

@@ -6,6 +6,8 @@
 //! record      a list of fields, each with name, type and possibly shape:
 //!             [("omega", "<f8"), ("H", "<c16", (2, 2))]
 //! ```
+//!
+//! The header is a Python literal; it arrives as JSON, with arrays for tuples (`python_literal`).
 
 use serde_json::Value as Json;
 

@@ -42,7 +42,8 @@ pub(super) struct OpenNodes {
     heap: BinaryHeap<Node>,
     /// Maximum node count in memory.
     most: usize,
-    /// Minimum bound over the nodes rejected for lack of memory.
+    /// Minimum bound over the nodes rejected for lack of memory, so that `least_bound` remains a
+    /// lower bound without them.
     refused: f64,
 }
 
@@ -50,7 +51,8 @@ impl OpenNodes {
     /// Creates an empty heap for nodes with `scales` scales each, in at most `bytes` bytes; at
     /// least one node is always stored.
     pub(super) fn new(scales: usize, bytes: usize) -> Self {
-        // `32`: overhead for two allocations. `3 *`: the heap doubles its memory when it grows.
+        // `32`: overhead for two allocations. `3 *`: when the heap grows, the old memory and the
+        // new, twice as large, exist together.
         let node_bytes = DifferenceBounds::bytes(scales)
             + scales * size_of::<f64>()
             + 32

@@ -32,9 +32,11 @@ impl Term {
     }
 }
 
+/// The objective as a sum of terms, at most one for each pair of scales, and a constant.
 #[derive(Clone, Debug)]
 pub(crate) struct TermSum {
     pub(crate) terms: Vec<Term>,
+    /// Entries that no scale changes, and the minima of the entries combined into the terms.
     pub(crate) constant: Rounded,
 }
 
@@ -113,7 +115,8 @@ impl Function {
     }
 
     /// Returns the concave interval's end that is nearest to `u`; `None` if there is no concave
-    /// interval, `u` is inside it, or the end is outside the open interval `within`.
+    /// interval, `u` is inside it, or the end is outside the open interval `within`. A split at
+    /// this end separates a part in which the function is convex.
     pub(crate) fn concave_end(&self, u: f64, within: Interval) -> Option<f64> {
         let Function::Exponential {
             concave: Some(concave),
@@ -136,7 +139,8 @@ impl Function {
         }
     }
 
-    /// Returns bounds on the slope over an interval.
+    /// Returns bounds on the slope over an interval. [`Range::size`] adds up the summands'
+    /// magnitudes, to which the rounding errors are proportional.
     pub(crate) fn slopes(&self, over: Interval) -> Range {
         match self {
             Function::Quadratic { .. } => {
@@ -164,7 +168,9 @@ impl Function {
         }
     }
 
-    /// Returns bounds on the curvature over an interval; only the lower bound is sharp.
+    /// Returns bounds on the curvature over an interval, with `size` as in [`Self::slopes`]. For a
+    /// single exponential, only the lower bound is sharp; for the sum of both, neither is sharp,
+    /// because their minima are at different `u`.
     pub(crate) fn curvatures(&self, over: Interval) -> Range {
         match self {
             Function::Quadratic {
@@ -183,6 +189,7 @@ impl Function {
                 let ahead = forward.curvatures(over);
                 let behind = backward.curvatures(over.mirrored());
                 let mut least = ahead.least + behind.least;
+                // The sum of the minima may be negative although the function is convex.
                 if self.is_convex_over(over) {
                     least = least.max(0.0);
                 }

@@ -1,9 +1,10 @@
-//! Assembles objects from the cells that hold their properties.
+//! Assembles MATLAB objects from the cells that hold their properties ([`Subsystem`]).
 //!
 //! An object becomes a record with its saved properties, followed by the class defaults for the
 //! properties that are not saved. References in property values are replaced by the objects to
-//! which they point; `Assembly::open` prevents endless recursion. An *opaque* value
-//! ([`Value::Opaque`]) holds only the reason why it could not be read.
+//! which they point; `Assembly::open` prevents endless recursion, and [`ValuePath::step`] limits
+//! the nesting depth. An *opaque* value ([`Value::Opaque`]) holds only the reason why it could not
+//! be read.
 
 use std::collections::{HashMap, HashSet};
 
@@ -21,9 +22,9 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 use crate::variable_fault::damage::Damage;
 use crate::variable_fault::unread::ObjectFault;
 
-/// Property that holds the value that a class saves instead of an object; such an object has no
-/// defaults.
-const CREATED: &str = "any";
+/// Property in which some classes, such as `timetable`, save a replacement for all properties; the
+/// class defaults then do not apply.
+const REPLACEMENT: &str = "any";
 /// Estimated memory for a property without the contents of its value \[bytes\].
 const PROPERTY_MEMORY: u64 = 256;
 /// All integers below this limit are exact as floats.
@@ -81,7 +82,8 @@ impl<'s> Assembly<'s> {
     ///
     /// 1. a single `string` object: its strings, or opaque if their packing is unknown;
     /// 2. an object that is already being assembled, and thus contains itself: opaque;
-    /// 3. else the records of all objects; opaque if they are nested too deeply or damaged.
+    /// 3. else the records of all objects; opaque if they are nested too deeply
+    ///    ([`ValuePath::step`]) or damaged.
     ///
     /// # Errors
     /// Any other fault, such as an exceeded limit.
@@ -143,6 +145,7 @@ impl<'s> Assembly<'s> {
         else {
             return Ok(None);
         };
+        // The exact 64-bit values if they are known; else the floats, unless any may be rounded.
         if let Some(words) = subsystem.long_words.get(&cell) {
             return unpack_texts(words, self.budget);
         }
@@ -191,6 +194,7 @@ impl<'s> Assembly<'s> {
     /// Appends empty values up to `length`, for objects that lack the property.
     fn pad(&self, values: &mut Vec<Value>, length: usize) -> Result<(), VariableFault> {
         let missing = length.saturating_sub(values.len());
+        // The factor 2: vectors grow by doubling.
         self.budget
             .take(missing as u64, 2 * size_of::<Value>() as u64, "")?;
         values.extend((0..missing).map(|_| Value::empty()));
@@ -198,8 +202,8 @@ impl<'s> Assembly<'s> {
     }
 
     /// Returns an object's saved properties, and the class defaults for the properties that are not
-    /// saved; only the saved ones if the class saves another value (`CREATED`), and none for a
-    /// deleted object (number 0).
+    /// saved; only the saved ones if they are replaced ([`REPLACEMENT`]), and none for a deleted
+    /// object (number 0).
     fn properties(
         &mut self,
         object: u32,
@@ -225,7 +229,7 @@ impl<'s> Assembly<'s> {
                 properties.push(NamedValue { name, value });
             }
         }
-        if known.contains(CREATED) {
+        if known.contains(REPLACEMENT) {
             return Ok(properties);
         }
         let Some(Value::Struct(defaults)) = subsystem.defaults.get(saved.class as usize) else {

@@ -7,9 +7,9 @@
 //! A [`Study`] contains a dataset and all decisions ([`decisions`]); an [`Engine`] computes its
 //! [`Analysis`] in [`stages`], each cached while its inputs stay the same. The [`results`] are
 //! typed facts with numbers; [`jobs`] are longer computations in parallel to the interactive
-//! analysis. An [`Execution`] runs the pieces of an analysis on one or several threads, reports
-//! progress and checks for cancellation. [`Shared`](shared::Shared) values are compared by
-//! identity, so that a job's unchanged input is recognised without reading it.
+//! analysis. An [`Execution`] (module [`execution`]) runs the pieces of an analysis on one or
+//! several threads, reports progress and checks for cancellation. Values in [`shared`] are compared
+//! by identity, so that a job's unchanged input is recognised without reading it.
 //!
 //! Section numbers (M4, M13.2, ...) are those of the pages listed under
 //! [Sections M1 to M18](gdcm_method#sections-m1-to-m18).

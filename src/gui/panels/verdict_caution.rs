@@ -62,7 +62,7 @@ fn coupling_caution(state: &State) -> Option<CouplingCaution> {
     if state.analysis()?.requested_couplings().is_err() {
         return Some(CouplingCaution {
             kind: RemarkKind::Trouble,
-            message: Message::new("no-couplings", "Couplings not applied"),
+            message: Message::new("no-couplings", "No couplings"),
         });
     }
     let cautions = coupling_cautions(used_couplings(state)?).len();

@@ -66,11 +66,8 @@ impl BodeHeadings<'_> {
                 let words = scene.message.unwrap_or("updating…");
                 row_text(ui, line, AT_RIGHT, words, SMALL_SIZE, self.palette.dim_text);
             }
-            let has_margin_names = scene.names_roles
-                || !scene.reference_lines.is_empty()
-                || !scene.group_names.is_empty();
             if let Some(transform) = self.view.transform(pane)
-                && has_margin_names
+                && has_margin_labels(scene)
             {
                 let labels = self.pane_labels(pane, transform);
                 paint_end_labels(ui, *transform.frame(), labels);
@@ -213,11 +210,15 @@ impl BodeHeadings<'_> {
     }
 }
 
+fn has_margin_labels(scene: &BodeScene<'_>) -> bool {
+    scene.names_roles || !scene.reference_lines.is_empty() || !scene.group_names.is_empty()
+}
+
 /// Returns the magnitude added by the leads as text for the heading above the magnitudes; `None`
-/// above the phases, without leads, or if the right margin names the roles, and thus also the price
+/// above the phases, without leads, or if the right margin has labels, the price among them
 /// (`pane_labels`).
 fn price_in_heading(scene: &BodeScene<'_>, pane: Pane) -> Option<String> {
-    if pane != Pane::Magnitude || scene.names_roles {
+    if pane != Pane::Magnitude || has_margin_labels(scene) {
         return None;
     }
     Some(format!("leads {}", scene.price_words()?))

@@ -6,9 +6,11 @@
 //! 3. Each group is recognised as if its matrices were the variables of one file.
 
 use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 
 use gdcm_model::assembly::FoundModel;
 use gdcm_model::dataset::model::Provenance;
+use gdcm_model::message_text::sanitized_path;
 
 use super::recognise::recognition_fault::{FoundFault, RecognitionFault};
 use super::recognise::{Found, recognise};
@@ -22,6 +24,15 @@ use crate::reading_budget::ReadingBudget;
 pub(super) const MATRIX_LETTERS: [char; 5] = ['A', 'B', 'C', 'D', 'E'];
 /// Characters that may separate the matrix letter from the rest of a file name.
 const SEPARATORS: [char; 4] = ['_', '-', '.', ' '];
+
+/// A file's path, name and hash. For a file in an archive, the path in the archive and the archive's
+/// hash.
+#[derive(Clone, Copy)]
+pub(super) struct FileIdentity<'f> {
+    pub(super) path: &'f Path,
+    pub(super) name: &'f str,
+    pub(super) sha256: &'f str,
+}
 
 /// Variables as read from a file.
 #[derive(Clone, Copy)]
@@ -48,6 +59,8 @@ pub(super) struct LooseMatrix {
     /// Files such as `nom_A.csv` and `nom/A.csv` therefore share a group; a letter that occurs
     /// twice in a group is a fault.
     group: String,
+    path: PathBuf,
+    /// Path relative to the folder that is read.
     file: String,
     sha256: String,
     /// The matrix; its letter is the variable name.
@@ -62,8 +75,7 @@ impl LooseMatrix {
     /// file name ends in a matrix letter.
     pub(super) fn from_variables(
         read: FileVariables<'_>,
-        file: &str,
-        sha256: &str,
+        identity: FileIdentity<'_>,
     ) -> Option<Self> {
         let [variable] = read.variables else {
             return None;
@@ -71,6 +83,7 @@ impl LooseMatrix {
         if !matches!(variable.value, Value::Array(_)) {
             return None;
         }
+        let file = identity.name;
         let (folder, name) = file.rsplit_once('/').unwrap_or(("", file));
         let stem = match name.rsplit_once('.') {
             Some((stem, _)) => stem,
@@ -85,8 +98,9 @@ impl LooseMatrix {
         };
         Some(Self {
             group,
+            path: identity.path.to_owned(),
             file: file.to_owned(),
-            sha256: sha256.to_owned(),
+            sha256: identity.sha256.to_owned(),
             variable: Variable {
                 name: letter.to_string(),
                 value: variable.value.clone(),
@@ -168,17 +182,27 @@ fn models_of_group(group: &str, matrices: &[LooseMatrix]) -> Found<FoundModel> {
 }
 
 /// Returns the fault for a letter that occurs twice in a group, such as in `nom_A.csv` and
-/// `nom-A.mat`; only one of these matrices could be used.
+/// `nom-A.mat`, or in the files `A.csv` of two given folders; only one of these matrices could be
+/// used.
 fn duplicate_matrix(matrices: &[LooseMatrix]) -> Option<RecognitionFault> {
     for (index, matrix) in matrices.iter().enumerate() {
         let name = &matrix.variable.name;
         let mut before = matrices[..index].iter();
-        if let Some(first) = before.find(|first| first.variable.name == *name) {
-            return Some(RecognitionFault::DuplicateMatrix {
-                name: name.clone(),
+        let Some(first) = before.find(|first| first.variable.name == *name) else {
+            continue;
+        };
+        let name = name.clone();
+        return Some(if first.file == matrix.file {
+            RecognitionFault::DuplicateFile {
+                name,
+                paths: [&first.path, &matrix.path].map(|path| sanitized_path(path)),
+            }
+        } else {
+            RecognitionFault::DuplicateMatrix {
+                name,
                 files: [first.file.clone(), matrix.file.clone()],
-            });
-        }
+            }
+        });
     }
     None
 }
@@ -233,7 +257,12 @@ mod tests {
             notes: &[],
             page_index,
         };
-        LooseMatrix::from_variables(read, file, "").unwrap()
+        let identity = FileIdentity {
+            path: Path::new(file),
+            name: file.rsplit_once(':').map_or(file, |(_, name)| name),
+            sha256: "",
+        };
+        LooseMatrix::from_variables(read, identity).unwrap()
     }
 
     fn matrix(file: &str, rows: usize, columns: usize) -> LooseMatrix {
@@ -296,6 +325,21 @@ mod tests {
             RecognitionFault::DuplicateMatrix {
                 name: "A".to_owned(),
                 files: ["c1/nom/A.csv".to_owned(), "c1/nom_A.csv".to_owned()],
+            }
+        );
+    }
+
+    #[test]
+    fn a_file_of_the_same_name_in_two_given_folders_is_named_by_its_path() {
+        // The part before the colon is the given folder.
+        let files = ["c1/:A.csv", "c1/:B.csv", "c1/:C.csv", "c2/:A.csv"];
+        let found = models_of_matrices(files.iter().map(|file| matrix(file, 1, 1)).collect());
+        assert!(found.items.is_empty());
+        assert_eq!(
+            only_fault(&found).fault,
+            RecognitionFault::DuplicateFile {
+                name: "A".to_owned(),
+                paths: ["c1/:A.csv".to_owned(), "c2/:A.csv".to_owned()],
             }
         );
     }

@@ -12,7 +12,7 @@ use gdcm_model::dataset::model::Provenance;
 
 use super::dataset_models::models_of_dataset;
 use super::loose_matrices::{
-    FileVariables, LooseMatrix, MATRIX_LETTERS, matrix_letter, models_of_matrices,
+    FileIdentity, FileVariables, LooseMatrix, MATRIX_LETTERS, matrix_letter, models_of_matrices,
 };
 use super::recognise::{Found, recognise};
 use super::response_tables::models_of_table;
@@ -114,13 +114,6 @@ pub fn models_of_bytes(
     })
 }
 
-/// A file's name and hash; for a file in an archive, the archive's hash.
-#[derive(Clone, Copy)]
-struct FileIdentity<'f> {
-    name: &'f str,
-    sha256: &'f str,
-}
-
 /// State while model files are read.
 struct ModelReading<'h> {
     headings: &'h Headings,
@@ -165,6 +158,7 @@ impl<'h> ModelReading<'h> {
             contents,
         } = file;
         let identity = FileIdentity {
+            path,
             name,
             sha256: &sha256,
         };
@@ -268,7 +262,7 @@ impl<'h> ModelReading<'h> {
         identity: FileIdentity<'_>,
         budget: &ReadingBudget<'_>,
     ) -> Result<Found<FoundModel>, VariableFault> {
-        if let Some(matrix) = LooseMatrix::from_variables(read, identity.name, identity.sha256) {
+        if let Some(matrix) = LooseMatrix::from_variables(read, identity) {
             self.matrices.push(matrix);
             return Ok(Found::default());
         }
@@ -328,7 +322,7 @@ impl<'h> ModelReading<'h> {
     /// Adds a file's models with their provenance. Only the first lists the unused variables: they
     /// are a property of the file, and would otherwise be repeated for each model.
     fn add_found(&mut self, mut in_file: Found<FoundModel>, identity: FileIdentity<'_>) {
-        let FileIdentity { name, sha256 } = identity;
+        let FileIdentity { name, sha256, .. } = identity;
         for (index, model) in in_file.items.iter_mut().enumerate() {
             let source = model.draft.source.get_or_insert_with(Provenance::default);
             if index == 0 {

@@ -47,7 +47,7 @@ impl SearchList {
     fn default_values(self) -> &'static str {
         match self {
             Self::Orders => "automatic, within 1 to 24",
-            Self::PastWindows => "automatic, within 8 to 24",
+            Self::PastWindows => "automatic, at most 24",
             Self::LaguerrePoles => "0.375, 0.54, 0.75 of the upper band limit",
         }
     }

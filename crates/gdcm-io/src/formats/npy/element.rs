@@ -108,15 +108,19 @@ impl Element {
             _ => return Err(unknown_code(code)),
         };
         let is_complex = class_letter == "c";
-        // A complex number's size includes both parts.
+        // A complex number's size includes both parts, which have the same size.
         let number_size = if is_complex { size / 2 } else { size };
-        let Some(number) = StoredNumber::new(number_class, number_size, big_endian) else {
-            return Err(VariableFault::unsupported(
-                "",
-                UnsupportedContent::NumpyNumbers {
-                    code: code.to_owned(),
-                },
-            ));
+        let is_divisible = !is_complex || size.is_multiple_of(2);
+        let number = match StoredNumber::new(number_class, number_size, big_endian) {
+            Some(number) if is_divisible => number,
+            _ => {
+                return Err(VariableFault::unsupported(
+                    "",
+                    UnsupportedContent::NumpyNumbers {
+                        code: code.to_owned(),
+                    },
+                ));
+            }
         };
         Ok(if is_complex {
             Self::Complex(number)
@@ -259,7 +263,7 @@ mod tests {
 
     #[test]
     fn objects_dates_and_long_floats_come_with_a_remedy() {
-        for descr in ["'|O'", "'<M8[ns]'", "'<f16'", "'<c32'", "'<i3'"] {
+        for descr in ["'|O'", "'<M8[ns]'", "'<f16'", "'<c32'", "'<c9'", "'<i3'"] {
             assert!(
                 matches!(parse(descr), Err(VariableFault::Unsupported { .. })),
                 "{descr}"

@@ -77,6 +77,13 @@ pub(crate) enum RecognitionFault {
         files[0], files[1]
     )]
     DuplicateMatrix { name: String, files: [String; 2] },
+    /// Two of the given folders hold a file with the same name, for the same matrix.
+    #[error(
+        "matrix {name} is given twice, in {} and {}; give the folder that contains both instead, \
+        so that each subfolder is a model",
+        paths[0], paths[1]
+    )]
+    DuplicateFile { name: String, paths: [String; 2] },
     #[error("{name}: expected {expected}, found {found}")]
     Kind {
         name: String,

@@ -54,21 +54,19 @@ struct RowLayout {
     height: f32,
 }
 
-impl RowLayout {
-    /// Returns the room between the condition number, or its symbol, and the right edge of the
-    /// airspeed \[pt\].
-    fn airspeed_room(&self) -> f32 {
-        let left = match self.symbol_center {
-            Some(center) => center + SYMBOL_REACH,
-            None => self.number_end + AIRSPEED_GAP,
-        };
-        self.airspeed_end - left
-    }
+/// Returns the room between the right edge of the condition number, or its symbol, and the right
+/// edge of the airspeed \[pt\].
+pub(super) fn airspeed_room(number_end: f32, symbol_center: Option<f32>, airspeed_end: f32) -> f32 {
+    let left = match symbol_center {
+        Some(center) => center + SYMBOL_REACH,
+        None => number_end + AIRSPEED_GAP,
+    };
+    airspeed_end - left
 }
 
 /// Returns the airspeed \[kt\], rounded to whole knots if it does not fit into `room` \[pt\], where
 /// it would touch the condition number.
-fn airspeed_text(ui: &Ui, airspeed_kt: f64, room: f32) -> String {
+pub(super) fn airspeed_text(ui: &Ui, airspeed_kt: f64, room: f32) -> String {
     let exact = airspeed_kt.to_string();
     if text_width(ui, &exact, body()) <= room {
         exact
@@ -102,7 +100,7 @@ const LEAST_GAP: f32 = 3.0;
 /// Minimum distance between the centre of a flight-state symbol and the airspeed \[pt\].
 const SYMBOL_REACH: f32 = 6.5;
 /// Minimum gap between the number and the airspeed of a condition \[pt\].
-const AIRSPEED_GAP: f32 = 6.0;
+const AIRSPEED_GAP: f32 = 5.0;
 /// Width of the frame around the cell in focus \[pt\].
 const FOCUS_WIDTH: f32 = 1.5;
 /// Cell height \[pt\].
@@ -291,11 +289,18 @@ impl<'a> ConditionRows<'a> {
             medium(BODY_SIZE),
             color,
         );
+        let RowLayout {
+            number_end,
+            symbol_center,
+            airspeed_end,
+            ..
+        } = self.layout;
+        let room = airspeed_room(number_end, symbol_center, airspeed_end);
         painted_text(
             ui,
-            row.with_max_x(row.left() + self.layout.airspeed_end),
+            row.with_max_x(row.left() + airspeed_end),
             AT_RIGHT_END,
-            &airspeed_text(ui, flight_state.airspeed_kt, self.layout.airspeed_room()),
+            &airspeed_text(ui, flight_state.airspeed_kt, room),
             body(),
             color,
         );
@@ -448,7 +453,9 @@ mod tests {
     fn a_long_airspeed_is_rounded_in_the_rail_and_exact_in_the_list() {
         let ctx = egui::Context::default();
         let output = ctx.run_ui(egui::RawInput::default(), |ui| {
-            let [rail, list] = [RAIL, LIST].map(|layout| layout.airspeed_room());
+            let [rail, list] = [RAIL, LIST].map(|layout| {
+                airspeed_room(layout.number_end, layout.symbol_center, layout.airspeed_end)
+            });
             assert_eq!(airspeed_text(ui, 120.5, rail), "120");
             assert_eq!(airspeed_text(ui, 120.5, list), "120.5");
             assert_eq!(airspeed_text(ui, 140.0, rail), "140");

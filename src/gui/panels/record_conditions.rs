@@ -9,7 +9,7 @@ use gdcm_model::dataset::Condition;
 use gdcm_model::number_format::counted;
 
 use super::condition_marks::Marks;
-use super::condition_rows::{ConditionRows, condition_name};
+use super::condition_rows::{ConditionRows, airspeed_room, airspeed_text, condition_name};
 use super::table_menu::{TableHeading, table_menu_ui};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::selection::SelectionCommand;
@@ -61,9 +61,9 @@ const LIST: Columns = Columns {
 };
 
 const RAIL: Columns = Columns {
-    number_end: 17.0,
+    number_end: 16.0,
     symbol_center: None,
-    airspeed_end: 48.0,
+    airspeed_end: 43.0,
     list_only: None,
     held_out_end: 77.0,
     status_left: 81.0,
@@ -207,7 +207,12 @@ impl RecordsRow<'_> {
             number_font,
             palette.text,
         );
-        let airspeed = flight_state.airspeed_kt.to_string();
+        let room = airspeed_room(
+            columns.number_end,
+            columns.symbol_center,
+            columns.airspeed_end,
+        );
+        let airspeed = airspeed_text(ui, flight_state.airspeed_kt, room);
         self.paint_cell(ui, row, columns.airspeed_end, &airspeed, palette.text);
         if let Some(center) = columns.symbol_center {
             let at = pos2(row.left() + center, row.center().y);

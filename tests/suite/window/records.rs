@@ -384,7 +384,7 @@ fn the_view_opens_on_a_sweep_of_the_input_in_focus_until_a_record_is_chosen() {
         window.run_steps(2);
         let name = state(&window).dataset().inputs()[input].name.clone();
         assert_eq!(displayed(&window), format!("cond10_sweep_{name}_1"));
-        window.get_by_label_contains(&format!("{name} at the cursor"));
+        window.get_by_label_contains(&format!("{name} [%] at the cursor"));
     }
     give(&mut window, RecordsCommand::ChooseRecord(0));
     give(
@@ -460,8 +460,12 @@ fn chips_hide_curves_and_further_outputs_are_chosen() {
     assert!(state(&window).records.hidden_roles.is_empty());
     give(&mut window, RecordsCommand::ShowOutputs(vec![5]));
     window.run_steps(2);
-    window.get_by_label_contains("NZ at the cursor");
-    assert!(window.query_by_label_contains("NX at the cursor").is_none());
+    window.get_by_label_contains("NZ [m/s2] at the cursor");
+    assert!(
+        window
+            .query_by_label_contains("NX [m/s2] at the cursor")
+            .is_none()
+    );
 }
 
 #[test]

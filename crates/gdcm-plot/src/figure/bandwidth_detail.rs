@@ -42,12 +42,23 @@ pub struct BandwidthDetail<'a> {
     pub phase_delay_tolerance_s: f64,
 }
 
+/// Space above the largest phase delay, relative to it: the ring around a selected dot must not
+/// touch the frame of a low plot.
+const SPACE_ABOVE: f64 = 0.12;
+
 /// Plots a response's phase delay over bandwidth in all conditions, for the physics, corrected and
 /// identified model in each; the tolerances about one condition's identified model are shaded.
 pub fn bandwidth_detail_figure(detail: &BandwidthDetail<'_>, dataset: &Dataset) -> Figure {
     let output = &dataset.outputs()[detail.pair.output].name;
     let x = Axis::linear("bandwidth [rad/s]");
-    let y = Axis::linear("phase delay [ms]").including(0.0);
+    let mut y = Axis::linear("phase delay [ms]").including(0.0);
+    for finding in &detail.requirements.bandwidth {
+        if finding.pair == detail.pair
+            && let Some([_, delay_ms]) = bandwidth_place(finding)
+        {
+            y = y.including((1.0 + SPACE_ABOVE) * delay_ms);
+        }
+    }
     let panel = Panel::new(x, y)
         .with_all(detail.tolerances())
         .with_all(areas_beyond(detail.levels, output))

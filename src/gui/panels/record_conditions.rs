@@ -63,9 +63,9 @@ const LIST: Columns = Columns {
 const RAIL: Columns = Columns {
     number_end: 16.0,
     symbol_center: None,
-    airspeed_end: 43.0,
+    airspeed_end: 45.0,
     list_only: None,
-    held_out_end: 77.0,
+    held_out_end: 78.0,
     status_left: 81.0,
     height: 24.0,
 };

@@ -166,7 +166,8 @@ fn group_for_condition(
     }
     if !others.is_empty() {
         let text = format!(
-            "{} of {count} records left out: their names give condition {}, not {condition}",
+            "{} of {count} records left out for condition {condition}: their names give other \
+            conditions ({})",
             others.len(),
             named_conditions(&others)
         );

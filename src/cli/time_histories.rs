@@ -124,7 +124,7 @@ pub(super) fn simulated_histories(
     records: &ReadHistories,
 ) -> Result<TimeHistories, Failure> {
     let records = records.conditions.as_slice();
-    let progress = TerminalProgress::new("simulating records");
+    let progress = TerminalProgress::new("simulating models with records");
     let execution = Execution::new(&Pool, &progress, HistoryRecords::steps(records));
     let tolerances = &analysis.study.requirements.tolerances;
     Ok(time_histories_of(

@@ -19,7 +19,9 @@ fn named_error_text(error: &CouplingError, inputs: &[String]) -> String {
         && let Some(name) = inputs.get(input - 1)
     {
         return format!(
-            "the mixing multiplies input {name} by {} at {} kt; expected a positive factor",
+            "the mixing multiplies input {name} by {} at {} kt; a factor of \
+            zero or below removes or reverses an input: check its sign in both models, or switch \
+            the couplings off",
             telling(*factor, 3),
             number(*airspeed_kt)
         );
@@ -42,7 +44,9 @@ mod tests {
         let text = named_error_text(&error, &inputs);
         assert_eq!(
             text,
-            "the mixing multiplies input LAT by -0.599 at 40 kt; expected a positive factor"
+            "the mixing multiplies input LAT by -0.599 at 40 kt; a factor of \
+            zero or below removes or reverses an input: check its sign in both models, or switch \
+            the couplings off"
         );
         assert_eq!(text, error.to_string().replace("input 2", "input LAT"));
         assert_eq!(named_error_text(&error, &[]), error.to_string());

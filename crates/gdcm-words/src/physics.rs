@@ -132,7 +132,7 @@ pub fn parameter_text(diagnosed: DiagnosedParameter<'_>) -> String {
             counted(count, "condition")
         ),
         Some(WhyNotNamed::NotPredicted) => {
-            "not named: conditions left out could not be predicted".to_owned()
+            "not named: conditions left out of the fit could not be predicted, or have no misfit to explain".to_owned()
         }
         Some(WhyNotNamed::NothingExplained { .. }) => format!(
             "no change proposed: all parameters together explain less than {} of the misfit",

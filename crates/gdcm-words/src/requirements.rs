@@ -132,8 +132,8 @@ pub fn mode_table(requirements: &Requirements, condition: ConditionId) -> Table 
     let deviations = if has_deviations {
         "standard deviations of the identified modes are available"
     } else {
-        "standard deviations of the identified modes are unavailable (the window has them for models \
-        that it has just identified); modes below the band count as not determined"
+        "standard deviations of the identified modes are unavailable (only models identified in the \
+        window since it opened have them); modes below the band count as not determined"
     };
     let title = format!("Modes of condition {condition}; {deviations}");
     let mut table = Table::new(title, mode_columns(is_coupled));

@@ -43,7 +43,7 @@ pub fn pattern_text(pattern: &RunPattern, dataset: &Dataset) -> String {
             output,
             share,
         } => format!(
-            "{} feeds {} across the cyclic axes (up to {} % of the stick)",
+            "{} feeds {} across the cyclic axes (up to {} % of the pedal travel)",
             outputs[*output],
             inputs[*input],
             decimals(100.0 * share, 0)
@@ -71,7 +71,7 @@ pub fn pattern_text(pattern: &RunPattern, dataset: &Dataset) -> String {
         } => {
             let damping = match damping_share {
                 Some(share) => format!(
-                    ", and a feedback for its damping (up to {} % of the stick)",
+                    ", and a feedback for its damping (up to {} % of the pedal travel)",
                     decimals(100.0 * share, 0)
                 ),
                 None => String::new(),

@@ -195,11 +195,14 @@ fn background_words(background: &Background, records: &RecordsState) -> String {
         return error_bar_progress(steps);
     }
     if let Some(steps) = background.time_histories {
-        return format!("simulating flight records, {} % …", steps.percent());
+        return format!(
+            "simulating models with flight records, {} % …",
+            steps.percent()
+        );
     }
     if let Some(steps) = background.couplings {
         return format!(
-            "refitting couplings without each condition in turn, {} % …",
+            "testing couplings on left-out conditions, {} % …",
             steps.percent()
         );
     }

@@ -16,8 +16,9 @@ use crate::gui::state::window_state::State;
 /// variant. A cell is "…" until its analysis is available.
 pub(super) fn effect_table(state: &State) -> Table {
     let condition = state.condition().id();
-    let title =
-        format!("Effects in condition {condition}, and of the schedule over all conditions");
+    let title = format!(
+        "Variants: results in condition {condition}, and the schedule's over all conditions"
+    );
     let mut columns = vec!["value".to_owned(), "now".to_owned()];
     let mut analyses = vec![state.analysis()];
     for variant in &state.study.variants {

@@ -146,7 +146,7 @@ fn schedule_words(settings: &ScheduleSettings) -> String {
         "delays are not scheduled"
     };
     let second = match settings.second {
-        Some(variable) => format!(" and {variable}"),
+        Some(variable) => format!(", plus a term linear in {variable}"),
         None => String::new(),
     };
     format!(

@@ -94,7 +94,7 @@ impl UnsupportedContent {
             Self::NumpyNumbers { .. } => "save them as float64",
             Self::NumpyTimes { .. } => "save them as float64, with the unit in the name",
             Self::PythonObjects => {
-                "save each array under its own name, such as numpy.savez(file, A=A, B=B)"
+                "save each array under its own name, for example with numpy.savez(file, A=A, B=B)"
             }
             Self::NpyVersion { .. } => "save a plain array with numpy.save",
             Self::DataAfterArray => {

@@ -51,7 +51,9 @@ pub enum CouplingError {
     SingularNormalMatrix { unknowns: usize },
     /// The mixing removes an input or reverses its sign.
     #[error(
-        "the mixing multiplies input {input} by {} at {} kt; expected a positive factor",
+        "the mixing multiplies input {input} by {} at {} kt; a factor of \
+            zero or below removes or reverses an input: check its sign in both models, or switch \
+            the couplings off",
         telling(*factor, 3),
         number(*airspeed_kt)
     )]

@@ -282,7 +282,7 @@ impl Setting {
         if self.unit.file.is_empty() {
             "a number".to_owned()
         } else {
-            format!("a number of {}", self.unit.file)
+            format!("a number in {}", self.unit.file)
         }
     }
 }

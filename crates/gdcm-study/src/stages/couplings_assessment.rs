@@ -32,7 +32,7 @@ use crate::results::couplings_assessment::{AssessedCouplings, CouplingsAssessmen
 use crate::results::fitted_couplings::FittedCouplings;
 
 /// Step name in progress reports.
-const LEAVING_OUT: &str = "couplings without each condition";
+const LEAVING_OUT: &str = "test of the couplings on left-out conditions";
 
 /// Share of each of the two analyses in the reported progress; all shares sum to 1.
 const ANALYSIS_SHARE: f64 = 0.1;

@@ -38,7 +38,7 @@ use crate::results::response_shapes::{ResponseShapes, ShapeSources};
 use crate::results::without_and_with::WithoutAndWith;
 
 /// Step name in progress reports.
-const LEAVING_OUT: &str = "physics parameters without each condition";
+const LEAVING_OUT: &str = "test of the physics parameters on left-out conditions";
 
 /// Share of the analysis without the parameters in the reported progress; all shares sum to 1.
 const WITHOUT_SHARE: f64 = 0.1;

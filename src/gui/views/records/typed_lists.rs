@@ -23,7 +23,7 @@ pub(super) fn typed_band(list: &[f64]) -> Result<Option<[f64; 2]>, Message> {
         [low, high] if 0.0 < low && low < high => Ok(Some([low, high])),
         _ => Err(Message::new(
             "wrong-band",
-            "expected two frequencies in rad/s, the lower first, as in \"0.5 12\"",
+            "expected two positive frequencies in rad/s, the lower first, as in \"0.5 12\"",
         )),
     }
 }

@@ -5,13 +5,12 @@
 //! order, with the sign of NZ reversed. `make_study_forms.m` beside the test data writes the same
 //! study with GNU Octave.
 
-use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write as _;
 use std::path::Path;
 use std::sync::Arc;
 
-use nalgebra::{Complex, DMatrix, Matrix3, Matrix3x4, Matrix4, Matrix4x3};
+use nalgebra::{Complex, DMatrix, dmatrix};
 use serde_json::json;
 
 use gdcm_io::formats::npy::write_npz;
@@ -30,6 +29,7 @@ use gdcm_study::{Engine, Study};
 
 use crate::program_folder;
 
+/// Ignores the progress of reading.
 struct Silent;
 
 impl FolderProgress for Silent {
@@ -75,52 +75,37 @@ struct FileModel {
     delays_s: Option<[Vec<f64>; 2]>,
 }
 
+/// Returns the physics model of a condition: a stable synthetic model with four states, whose
+/// entries change with the condition.
 fn physics_model(condition: usize) -> FileModel {
     let k = condition as f64;
-    let a = Matrix4::new(
-        -1.0 - 0.1 * k,
-        0.2,
-        0.0,
-        0.1,
-        -0.3,
-        -2.0 - 0.05 * k,
-        0.4,
-        0.0,
-        0.1,
-        0.0,
-        -0.8,
-        0.5,
-        0.0,
-        0.2,
-        -0.6,
-        -1.5,
-    );
-    let b = Matrix4x3::new(
-        2.0,
-        0.3,
-        0.1,
-        0.2,
-        3.0 + 0.1 * k,
-        0.0,
-        0.1,
-        0.0,
-        1.5,
-        0.0,
-        0.4,
-        0.5,
-    );
-    let c = Matrix3x4::new(0.2, 1.0, 0.1, 0.0, 1.0, 0.1, 0.0, 0.2, 0.1, 0.0, 1.0, 0.4);
-    let d = Matrix3::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.2);
+    let a = dmatrix![
+        -1.0 - 0.1 * k, 0.2, 0.0, 0.1;
+        -0.3, -2.0 - 0.05 * k, 0.4, 0.0;
+        0.1, 0.0, -0.8, 0.5;
+        0.0, 0.2, -0.6, -1.5
+    ];
+    let b = dmatrix![
+        2.0, 0.3, 0.1;
+        0.2, 3.0 + 0.1 * k, 0.0;
+        0.1, 0.0, 1.5;
+        0.0, 0.4, 0.5
+    ];
+    let c = dmatrix![
+        0.2, 1.0, 0.1, 0.0;
+        1.0, 0.1, 0.0, 0.2;
+        0.1, 0.0, 1.0, 0.4
+    ];
+    let d = dmatrix![
+        0.0, 0.0, 0.0;
+        0.0, 0.0, 0.0;
+        0.0, 0.0, 0.2
+    ];
     let owned = |names: [&str; CHANNELS]| names.map(str::to_owned).to_vec();
     FileModel {
         condition,
         is_identified: false,
-        matrices: [
-            DMatrix::from_row_slice(4, 4, a.transpose().as_slice()),
-            DMatrix::from_row_slice(4, 3, b.transpose().as_slice()),
-            DMatrix::from_row_slice(3, 4, c.transpose().as_slice()),
-            DMatrix::from_row_slice(3, 3, d.transpose().as_slice()),
-        ],
+        matrices: [a, b, c, d],
         names: NAMES.map(owned),
         units: UNITS.map(owned),
         delays_s: None,
@@ -130,18 +115,20 @@ fn physics_model(condition: usize) -> FileModel {
 /// Returns the identified model of a condition, without delays if the format cannot store them.
 fn identified_model(condition: usize, has_delays: bool) -> FileModel {
     let [input_gains, output_gains] = gains(condition);
+    // Units of the dataset per unit of the files; the sign of NZ is reversed.
     let input_factors = [PERCENT_IN_AN_INCH, 1.0, 100.0];
     let output_factors = [180.0 / PI, 180.0 / PI, -9.806_65];
     let [inputs, outputs] = ORDER;
     let physics = physics_model(condition);
-    let into = DMatrix::from_fn(CHANNELS, CHANNELS, |row, column| {
+    // M_I and M_O with the gains, the conversion of units and the order of channels in the files.
+    let input_matrix = DMatrix::from_fn(CHANNELS, CHANNELS, |row, column| {
         if row == inputs[column] {
             input_gains[row] * input_factors[row]
         } else {
             0.0
         }
     });
-    let from = DMatrix::from_fn(CHANNELS, CHANNELS, |row, column| {
+    let output_matrix = DMatrix::from_fn(CHANNELS, CHANNELS, |row, column| {
         if column == outputs[row] {
             output_gains[column] / output_factors[column]
         } else {
@@ -149,11 +136,11 @@ fn identified_model(condition: usize, has_delays: bool) -> FileModel {
         }
     });
     let [a, b, c, d] = physics.matrices;
-    let in_order = |of: [[&str; CHANNELS]; 2]| {
+    let in_order = |texts: [[&str; CHANNELS]; 2]| {
         [0, 1].map(|side| {
             ORDER[side]
                 .iter()
-                .map(|channel| of[side][*channel].to_owned())
+                .map(|channel| texts[side][*channel].to_owned())
                 .collect()
         })
     };
@@ -166,7 +153,12 @@ fn identified_model(condition: usize, has_delays: bool) -> FileModel {
     FileModel {
         condition,
         is_identified: true,
-        matrices: [a, b * &into, &from * c, &from * d * &into],
+        matrices: [
+            a,
+            b * &input_matrix,
+            &output_matrix * c,
+            &output_matrix * d * &input_matrix,
+        ],
         names: in_order(NAMES_OF_FLIGHT),
         units: in_order(UNITS_OF_FLIGHT),
         delays_s: has_delays.then_some(delays),
@@ -257,7 +249,7 @@ fn text(text: &str) -> Value {
 fn cell(texts: &[String]) -> Value {
     Value::Cell(CellArray {
         shape: vec![texts.len(), 1],
-        values: texts.iter().map(|of| text(of)).collect(),
+        values: texts.iter().map(|entry| text(entry)).collect(),
     })
 }
 
@@ -331,7 +323,7 @@ fn stacked(models: &[&FileModel], matrix: usize, pages_first: bool) -> Value {
 }
 
 /// Returns the models of one role (identified or physics) in their order.
-fn of_role(models: &[FileModel], is_identified: bool) -> Vec<&FileModel> {
+fn models_of_role(models: &[FileModel], is_identified: bool) -> Vec<&FileModel> {
     models
         .iter()
         .filter(|model| model.is_identified == is_identified)
@@ -340,6 +332,7 @@ fn of_role(models: &[FileModel], is_identified: bool) -> Vec<&FileModel> {
 
 // Writers of the file formats; each writes the study into a folder.
 
+/// Writes a MATLAB file for each model.
 fn mat_per_model(root: &Path) {
     for model in models(true) {
         let sys = struct_array(vec![model.fields()]);
@@ -348,10 +341,11 @@ fn mat_per_model(root: &Path) {
     }
 }
 
+/// Writes the models of a role as a struct array in a MATLAB file.
 fn mat_struct_array(root: &Path) {
     for is_identified in [false, true] {
         let all = models(true);
-        let models = of_role(&all, is_identified);
+        let models = models_of_role(&all, is_identified);
         let elements = models.iter().map(|model| model.fields()).collect();
         let path = root.join(format!("{}.mat", models[0].stem()));
         std::fs::write(
@@ -421,24 +415,27 @@ fn stack(models: &[&FileModel], pages_first: bool) -> Vec<Variable> {
     variables
 }
 
+/// Writes the models of a role as stacked matrices in a MATLAB file.
 fn mat_stack(root: &Path) {
     for is_identified in [false, true] {
         let all = models(true);
-        let models = of_role(&all, is_identified);
+        let models = models_of_role(&all, is_identified);
         let path = root.join(format!("{}.mat", models[0].stem()));
         std::fs::write(path, write_mat(&stack(&models, false)).unwrap()).unwrap();
     }
 }
 
+/// Writes the models of a role as stacked matrices in a NumPy archive.
 fn npz_stack(root: &Path) {
     for is_identified in [false, true] {
         let all = models(true);
-        let models = of_role(&all, is_identified);
+        let models = models_of_role(&all, is_identified);
         let path = root.join(format!("{}.npz", models[0].stem()));
         std::fs::write(path, write_npz(&stack(&models, true)).unwrap()).unwrap();
     }
 }
 
+/// Copies the study that GNU Octave has written in a format.
 fn octave(form: &str, root: &Path) {
     let folder = program_folder().join("tests/data/forms").join(form);
     for entry in std::fs::read_dir(folder).unwrap() {
@@ -462,6 +459,7 @@ fn text_matrices(root: &Path) {
     }
 }
 
+/// Writes a JSON file for each model; channels are names, or objects with name and unit.
 fn json_models(root: &Path, names_are_objects: bool) {
     for model in models(true) {
         let rows = |matrix: &DMatrix<f64>| -> Vec<Vec<f64>> {
@@ -473,9 +471,9 @@ fn json_models(root: &Path, names_are_objects: bool) {
         let [a, b, c, d] = &model.matrices;
         let mut file = json!({"A": rows(a), "B": rows(b), "C": rows(c), "D": rows(d)});
         for (side, units_key) in [("inputs", "input_units"), ("outputs", "output_units")] {
-            let of_side = usize::from(side == "outputs");
-            let names = &model.names[of_side];
-            let units = &model.units[of_side];
+            let side_index = usize::from(side == "outputs");
+            let names = &model.names[side_index];
+            let units = &model.units[side_index];
             if names_are_objects {
                 let objects = names
                     .iter()
@@ -526,6 +524,7 @@ const SHORT_NAMES: [[&str; CHANNELS]; 2] = [
     ["nz", "pitch_rate", "p"],
 ];
 
+/// Writes each identified model as a text table with two columns for each response.
 fn frf_wide(root: &Path) {
     physics_beside(root, |folder, model| {
         let mut heading = "f [Hz]".to_owned();
@@ -567,19 +566,20 @@ fn name_of_response(output: &str, input: &str) -> String {
 /// Writes a file for each response, with the name that `name` returns.
 fn frf_per_response(root: &Path, name: impl Fn(&str, &str) -> String) {
     physics_beside(root, |folder, model| {
-        for (output, of_output) in SHORT_NAMES[1].into_iter().enumerate() {
-            for (input, of_input) in SHORT_NAMES[0].into_iter().enumerate() {
+        for (output, output_name) in SHORT_NAMES[1].into_iter().enumerate() {
+            for (input, input_name) in SHORT_NAMES[0].into_iter().enumerate() {
                 let mut table = "omega [rad/s],re,im\n".to_owned();
                 for omega in frequencies() {
                     let value = model.response(output, input, omega);
                     writeln!(table, "{omega:?},{:?},{:?}", value.re, value.im).unwrap();
                 }
-                std::fs::write(folder.join(name(of_output, of_input)), table).unwrap();
+                std::fs::write(folder.join(name(output_name, input_name)), table).unwrap();
             }
         }
     });
 }
 
+/// Writes each identified model as an array of responses in a NumPy archive.
 fn frd_npz(root: &Path, names: impl Fn(&FileModel) -> [Vec<String>; 2]) {
     physics_beside(root, |folder, model| {
         let omega = frequencies();
@@ -653,7 +653,7 @@ fn rules_of_role(found: &[FoundModel]) -> Rules {
         units: Vec::new(),
         ..rules(found)
     };
-    let of_flight = rules.declarations_mut(FileScope::Identified);
+    let flight_rules = rules.declarations_mut(FileScope::Identified);
     for (channel, unit) in [
         ("LAT", "%"),
         ("COL", "fraction"),
@@ -661,12 +661,14 @@ fn rules_of_role(found: &[FoundModel]) -> Rules {
         ("Q", "rad/s"),
         ("NZ", "g"),
     ] {
-        of_flight.units.insert(channel.to_owned(), unit.to_owned());
+        flight_rules
+            .units
+            .insert(channel.to_owned(), unit.to_owned());
     }
-    of_flight
+    flight_rules
         .factors
         .insert("LON".to_owned(), PERCENT_IN_AN_INCH);
-    of_flight.signs.insert("NZ".to_owned(), -1.0);
+    flight_rules.signs.insert("NZ".to_owned(), -1.0);
     rules
 }
 
@@ -714,16 +716,12 @@ struct Form {
 /// Asserts that each response differs from the physics model by the known gain and delay.
 fn assert_known(name: &str, dataset: Dataset, has_delays: bool) {
     assert_eq!(dataset.conditions().len(), CONDITIONS, "{name}");
-    let airspeeds: BTreeMap<usize, f64> = dataset
-        .conditions()
-        .iter()
-        .map(|of| of.flight_state().airspeed_kt)
-        .enumerate()
-        .collect();
-    for (condition, airspeed) in airspeeds {
-        assert_eq!(airspeed, airspeed_kt(condition), "{name}");
+    for (place, condition) in dataset.conditions().iter().enumerate() {
+        let state = condition.flight_state();
+        assert_eq!(state.airspeed_kt, airspeed_kt(place), "{name}");
     }
     let mut study = Study::new(Arc::new(dataset));
+    // Bounds that contain the known gains and delays, and no penalty that would move the optimum.
     for edit in [
         setting_table::GAIN_BOUNDS.to(Some(GainBounds {
             lower: 0.3,
@@ -739,7 +737,7 @@ fn assert_known(name: &str, dataset: Dataset, has_delays: bool) {
     for (place, condition) in study.dataset.conditions().iter().enumerate() {
         let result = analysis
             .condition(condition.id())
-            .unwrap_or_else(|| panic!("{name}: condition {place}"));
+            .unwrap_or_else(|| panic!("{name}: condition {place} has no result"));
         let [input_gains, output_gains] = gains(place);
         for output in 0..CHANNELS {
             for input in 0..CHANNELS {
@@ -751,27 +749,27 @@ fn assert_known(name: &str, dataset: Dataset, has_delays: bool) {
                     0.0
                 };
                 let delta = &result.comparison.delta;
-                let found = (delta.gain[pair].unwrap(), delta.delay_s[pair].unwrap());
+                let context = format!("{name}, condition {place}, {pair:?}");
+                let found_gain = delta.gain[pair].unwrap();
                 assert!(
-                    (found.0 / gain - 1.0).abs() < 1e-6,
-                    "{name}, {place}, {pair:?}: {found:?}, not {gain}"
+                    (found_gain / gain - 1.0).abs() < 1e-6,
+                    "{context}: delta gain {found_gain}, not {gain}"
                 );
+                let found_delay_s = delta.delay_s[pair].unwrap();
                 assert!(
-                    (found.1 - delay_s).abs() < 1e-6,
-                    "{name}, {place}, {pair:?}: {found:?}, not {delay_s}"
+                    (found_delay_s - delay_s).abs() < 1e-6,
+                    "{context}: delta delay {found_delay_s} s, not {delay_s} s"
                 );
                 if study.dataset.header().on_axis[pair] {
-                    let net = (
-                        result.correction.net_gain(pair),
-                        result.correction.net_delay_s(pair),
-                    );
+                    let net_gain = result.correction.net_gain(pair);
                     assert!(
-                        (net.0 / gain - 1.0).abs() < 1e-6,
-                        "{name}, {place}, {pair:?}: {net:?}, not {gain}"
+                        (net_gain / gain - 1.0).abs() < 1e-6,
+                        "{context}: net gain {net_gain}, not {gain}"
                     );
+                    let net_delay_s = result.correction.net_delay_s(pair);
                     assert!(
-                        (net.1 - delay_s).abs() < 1e-6,
-                        "{name}, {place}, {pair:?}: {net:?}, not {delay_s}"
+                        (net_delay_s - delay_s).abs() < 1e-6,
+                        "{context}: net delay {net_delay_s} s, not {delay_s} s"
                     );
                 }
             }
@@ -780,7 +778,7 @@ fn assert_known(name: &str, dataset: Dataset, has_delays: bool) {
 }
 
 #[test]
-fn known_gains_and_delays_come_back_from_every_form_of_files_or_are_asked_about() {
+fn every_file_format_gives_the_known_gains_and_delays_or_asks_a_question() {
     const KNOWN: Outcome = Outcome::Known { has_delays: true };
     let forms = [
         Form {
@@ -884,8 +882,11 @@ fn known_gains_and_delays_come_back_from_every_form_of_files_or_are_asked_about(
             name: "FRD npz whose labels match nothing",
             write: |root| {
                 frd_npz(root, |_| {
-                    ["u", "y"]
-                        .map(|letter| (1..=CHANNELS).map(|of| format!("{letter}{of}")).collect())
+                    ["u", "y"].map(|letter| {
+                        (1..=CHANNELS)
+                            .map(|number| format!("{letter}{number}"))
+                            .collect()
+                    })
                 })
             },
             rules,

@@ -8,12 +8,14 @@ use gdcm_io::reading_budget::ReadingBudget;
 use gdcm_model::assembly::problem::ProblemKind;
 use gdcm_model::assembly::{Assembly, ChannelLabel, FoundModel, Rules, proposed_rules};
 use gdcm_model::dataset::dataset_draft::ResponseDraft;
+use gdcm_model::names::RowRole;
 
 use crate::program_folder;
 
-fn found(name: &str) -> FoundModels {
+/// Reads a file of `tests/data/foreign`; its name includes the folder of the writing program.
+fn read_foreign(name: &str) -> FoundModels {
     let bytes = std::fs::read(program_folder().join("tests/data/foreign").join(name))
-        .expect("the file is there");
+        .expect("the test file should exist");
     let name = name.rsplit('/').next().unwrap_or(name);
     models_of_bytes(&bytes, name, &ReadingBudget::new(1 << 26))
         .unwrap_or_else(|error| panic!("{name}: {error}"))
@@ -21,11 +23,11 @@ fn found(name: &str) -> FoundModels {
 
 /// Returns the model of a file; asserts that there is exactly one.
 fn model(name: &str) -> FoundModel {
-    let mut found = found(name);
+    let mut found = read_foreign(name);
     assert_eq!(
         found.models.len(),
         1,
-        "{name}: {:?} {:?}",
+        "{name} should contain one model; faults {:?}, ignored {:?}",
         found.faults,
         found.ignored
     );
@@ -37,7 +39,7 @@ fn matrices(model: &FoundModel) -> Vec<DMatrix<f64>> {
 }
 
 fn response(model: &FoundModel) -> &ResponseDraft {
-    model.response().expect("a response")
+    model.response().expect("the model should be a response")
 }
 
 /// Returns the response of Q to LON from the text file that states all names and units.
@@ -55,16 +57,19 @@ fn assert_same_response(found: &ResponseDraft, [output, inputs, input]: [usize; 
     for k in 0..count {
         assert!(
             (found.omega[k] / expected.omega[k] - 1.0).abs() < 1e-12,
-            "{name}: frequency {k}"
+            "{name}: frequency {k} differs"
         );
         let [re, im] = [&found.re, &found.im].map(|part| part.values[start + k]);
         let difference = (re - expected.re.values[k]).hypot(im - expected.im.values[k]);
-        assert!(difference < 1e-9 * re.hypot(im), "{name}, {k}: {re} {im}");
+        assert!(
+            difference < 1e-9 * re.hypot(im),
+            "{name}, value {k}: {re} + {im}j differs by {difference}"
+        );
     }
 }
 
 #[test]
-fn what_octave_saves_in_any_form_is_the_same_model_to_the_last_digit() {
+fn every_format_of_octave_gives_the_same_matrices_to_the_last_digit() {
     let expected = matrices(&model("octave/expected-A-B-C-D.mat"));
     for name in [
         "m_text.txt",
@@ -98,7 +103,7 @@ fn a_discrete_model_of_octave_keeps_its_sample_time() {
 }
 
 #[test]
-fn a_discrete_model_without_a_sample_time_is_asked_about_and_never_taken_as_continuous() {
+fn a_missing_sample_time_of_a_discrete_model_is_asked_for() {
     let mut discrete = model("octave/d_text.txt");
     discrete.draft.timing.sample_time_s = None;
     let is_asked = |model: &FoundModel, sample_time_s: Option<f64>| {
@@ -115,12 +120,13 @@ fn a_discrete_model_without_a_sample_time_is_asked_about_and_never_taken_as_cont
             .any(|problem| matches!(problem.kind, ProblemKind::NoSampleTime { .. }))
     };
     assert!(is_asked(&discrete, None));
-    assert!(!is_asked(&discrete, Some(0.02)) && !is_asked(&discrete, Some(0.0)));
+    assert!(!is_asked(&discrete, Some(0.02)));
+    assert!(!is_asked(&discrete, Some(0.0)));
     assert!(!is_asked(&model("octave/m_text.txt"), None));
 }
 
 #[test]
-fn signs_are_said_of_all_of_a_role_and_of_one_file_and_go_before_the_mark_in_the_name() {
+fn signs_of_a_file_override_those_of_its_role_of_all_files_and_of_the_name() {
     let mut found = model("octave/ss_text.txt");
     found.outputs[5] = ChannelLabel::named("-NZ");
     let factor = |rules: Rules| {
@@ -128,46 +134,52 @@ fn signs_are_said_of_all_of_a_role_and_of_one_file_and_go_before_the_mark_in_the
             .outputs
             .uses[5]
             .clone()
-            .map(|of| of.factor)
+            .map(|channel_use| channel_use.factor)
     };
     let rules = || {
         let mut rules = proposed_rules("", std::slice::from_ref(&found));
-        rules
-            .outputs
-            .iter_mut()
-            .for_each(|channel| channel.unit_in_files = Some(channel.unit.clone()));
+        for channel in &mut rules.outputs {
+            channel.unit_in_files = Some(channel.unit.clone());
+        }
         rules
     };
     assert_eq!(rules().outputs[5].name, "NZ");
-    assert_eq!(factor(rules()), Some(-1.0), "the mark is the sign");
-    let mut said = rules();
-    said.signs.insert("NZ".into(), 1.0);
-    assert_eq!(factor(said.clone()), Some(1.0));
-    said.role_signs
+    assert_eq!(
+        factor(rules()),
+        Some(-1.0),
+        "the minus in the name of the channel is its sign"
+    );
+    let mut stated = rules();
+    stated.signs.insert("NZ".into(), 1.0);
+    assert_eq!(factor(stated.clone()), Some(1.0));
+    stated
+        .role_signs
         .insert("physics".into(), [("NZ".to_owned(), -1.0)].into());
-    said.rows.entry(found.key()).or_default().role = Some(gdcm_model::names::RowRole::Nominal);
-    assert_eq!(factor(said.clone()), Some(-1.0));
-    said.rows.entry(found.key()).or_default().signs = Some([("NZ".to_owned(), 1.0)].into());
-    assert_eq!(factor(said), Some(1.0));
+    stated.rows.entry(found.key()).or_default().role = Some(RowRole::Nominal);
+    assert_eq!(factor(stated.clone()), Some(-1.0));
+    stated.rows.entry(found.key()).or_default().signs = Some([("NZ".to_owned(), 1.0)].into());
+    assert_eq!(factor(stated), Some(1.0));
 }
 
 #[test]
-fn a_transfer_function_of_octave_is_realised() {
+fn a_transfer_function_of_octave_becomes_a_state_space_model() {
     let found = model("octave/tf_v7.mat");
-    let a = found.draft.matrices[0].as_ref().expect("matrices");
+    let a = found.draft.matrices[0]
+        .as_ref()
+        .expect("the model should have matrices");
     assert_eq!(
         (a.nrows(), found.inputs.len(), found.outputs.len()),
         (8, 1, 1)
     );
     for name in ["kinds.txt", "kinds.bin", "kinds.h5.gz"] {
-        let found = crate::foreign_files::found(&format!("octave/{name}"));
-        let of_t = found
+        let found = read_foreign(&format!("octave/{name}"));
+        let transfer_function = found
             .models
             .iter()
             .find(|model| model.variable() == "t")
-            .unwrap_or_else(|| panic!("{name}"));
+            .unwrap_or_else(|| panic!("{name} should contain a model t"));
         assert_eq!(
-            of_t.draft.matrices[0]
+            transfer_function.draft.matrices[0]
                 .as_ref()
                 .map(|a| a.as_slice().to_vec()),
             Some(vec![-3.0, 1.0, -4.0, 0.0])
@@ -191,19 +203,19 @@ fn responses_of_octave_numpy_and_python_control_are_those_of_the_text() {
 }
 
 #[test]
-fn a_stack_in_the_order_of_numpy_is_a_model_for_each_first_index() {
-    let found = found("numpy/stack.npz");
+fn each_first_index_of_a_numpy_stack_is_a_model() {
+    let found = read_foreign("numpy/stack.npz");
     assert_eq!(found.models.len(), 3, "{:?}", found.faults);
     let expected = matrices(&model("octave/expected-A-B-C-D.mat"));
     assert_eq!(found.models[0].variable(), "[0,:,:]");
     assert!(
         found.models.iter().any(|model| matrices(model) == expected),
-        "one of them is the model itself"
+        "a model of the stack should equal the one of Octave"
     );
 }
 
 #[test]
-fn responses_as_text_are_read_however_they_are_written() {
+fn responses_in_text_files_are_read_from_every_kind_of_column() {
     for name in [
         "cplx_Q_LON.csv",
         "desc_Q_LON.csv",
@@ -222,7 +234,10 @@ fn responses_as_text_are_read_however_they_are_written() {
         assert_same_response(response(&model), [0, 1, 0], name);
     }
     let percent = model("text/cohp_Q_LON.csv");
-    let coherence = response(&percent).coherence.as_ref().expect("coherence");
+    let coherence = response(&percent)
+        .coherence
+        .as_ref()
+        .expect("the response should have coherence");
     assert!(
         (coherence.values[0] - 0.97).abs() < 1e-12,
         "{}",
@@ -231,7 +246,7 @@ fn responses_as_text_are_read_however_they_are_written() {
 }
 
 #[test]
-fn a_table_whose_units_or_names_are_not_said_is_never_read_by_a_guess() {
+fn missing_units_of_a_table_are_asked_for_and_never_guessed() {
     for (name, units) in [
         (
             "amb_Q_LON.csv",
@@ -241,14 +256,14 @@ fn a_table_whose_units_or_names_are_not_said_is_never_read_by_a_guess() {
         ("frf_Q_LON.txt", &[]),
         ("positive_Q_LON.csv", &[["dB", "abs"]]),
     ] {
-        let found = found(&format!("text/{name}"));
+        let found = read_foreign(&format!("text/{name}"));
         assert!(found.models.is_empty(), "{name}");
         let mut asked = Vec::new();
         for missing in found.missing_units.values().flatten() {
             asked.push(missing.units);
         }
         assert_eq!(asked, units, "{name}");
-        // The question about the headings is the description of what is not a model.
+        // The question about the headings is the reason why the file is ignored.
         assert_eq!(found.faults, [""; 0], "{name}");
         assert_eq!(found.ignored.len(), 1, "{name}: {:?}", found.ignored);
     }

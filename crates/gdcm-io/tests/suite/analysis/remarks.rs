@@ -7,7 +7,8 @@ use gdcm_study::results::remark_kind::RemarkKind;
 
 use super::*;
 
-fn said(analysis: &Analysis, condition: i64) -> Vec<Remark> {
+/// Returns the remarks on the condition with the number `condition`.
+fn remarks_on(analysis: &Analysis, condition: i64) -> Vec<Remark> {
     condition_remarks(
         &analysis.study,
         analysis.condition(ConditionId(condition)).unwrap(),
@@ -16,9 +17,10 @@ fn said(analysis: &Analysis, condition: i64) -> Vec<Remark> {
 }
 
 #[test]
-fn a_held_response_that_goes_farther_from_flight_is_named_with_both_costs() {
+fn a_remark_names_held_responses_that_the_correction_moves_farther_from_flight() {
     let mut study = study_of_example();
     let mut engine = Engine::default();
+    // Few frequencies, to save time; likewise below.
     study.apply(&setting_table::POINTS.to(40)).unwrap();
     let held = [("NY", "LAT"), ("P", "PED"), ("R", "LAT")]
         .map(|(output, input)| study.dataset.find_pair(output, input));
@@ -31,8 +33,8 @@ fn a_held_response_that_goes_farther_from_flight_is_named_with_both_costs() {
     let mut worse = 0;
     for condition in analysis.study.dataset.conditions() {
         let result = analysis.condition(condition.id()).unwrap();
-        let said = said(analysis, condition.id().0);
-        let farther = said.iter().find_map(|remark| match remark {
+        let remarks = remarks_on(analysis, condition.id().0);
+        let farther = remarks.iter().find_map(|remark| match remark {
             Remark::HeldFarther(responses) => Some(responses.as_slice()),
             _ => None,
         });
@@ -42,16 +44,17 @@ fn a_held_response_that_goes_farther_from_flight_is_named_with_both_costs() {
                 .unwrap_or_default()
                 .iter()
                 .find(|response| response.pair == pair);
+            // An increase of J by up to 0.5 is negligible: no remark.
             assert_eq!(named.is_some(), cost.total() > 0.5, "{pair:?} {cost:?}");
             assert!(named.is_none_or(|response| response.cost == cost));
             worse += usize::from(named.is_some());
         }
     }
-    assert_eq!(worse, 2, "LAT → R in conditions 5 and 11");
+    assert_eq!(worse, 2, "expected LAT → R in conditions 5 and 11");
 }
 
 #[test]
-fn a_condition_that_is_left_out_of_the_schedule_says_so() {
+fn a_condition_left_out_of_the_schedule_has_a_remark() {
     let mut study = study_of_example();
     let mut engine = Engine::default();
     study.apply(&setting_table::POINTS.to(40)).unwrap();
@@ -62,12 +65,12 @@ fn a_condition_that_is_left_out_of_the_schedule_says_so() {
         })
         .unwrap();
     let analysis = analyze(&mut engine, &study);
-    let says = |condition| said(&analysis, condition).contains(&Remark::LeftOutOfSchedule);
-    assert!(says(3) && !says(4));
+    assert!(remarks_on(&analysis, 3).contains(&Remark::LeftOutOfSchedule));
+    assert!(!remarks_on(&analysis, 4).contains(&Remark::LeftOutOfSchedule));
 }
 
 #[test]
-fn a_tolerance_decides_whether_a_loop_of_held_gains_agrees() {
+fn the_agreement_tolerance_decides_whether_a_loop_of_held_gains_agrees() {
     let mut study = study_of_example();
     let mut engine = Engine::default();
     study.apply(&setting_table::POINTS.to(40)).unwrap();
@@ -85,13 +88,14 @@ fn a_tolerance_decides_whether_a_loop_of_held_gains_agrees() {
         .clone();
     assert!(
         !loops.is_empty(),
-        "four ratios of the example agree by chance only"
+        "the gains of the loop should conflict at the default tolerance"
     );
     assert!(
-        said(&strict, 1)
+        remarks_on(&strict, 1)
             .iter()
             .any(|remark| remark.kind() == RemarkKind::Trouble)
     );
+    // The greatest permitted tolerance is 3 dB.
     assert!(matches!(
         study.apply(&setting_table::AGREEMENT.to(3.1)),
         Err(EditRefusal::OutOfRange { found: 3.1, .. })
@@ -104,10 +108,10 @@ fn a_tolerance_decides_whether_a_loop_of_held_gains_agrees() {
         "{:?}",
         result.gains.conflicts
     );
-    let said = said(&lenient, 1);
-    let Remark::GainsMatched { tolerance_db, .. } = said[0] else {
-        panic!("{:?}", said[0]);
+    let remarks = remarks_on(&lenient, 1);
+    let Remark::GainsMatched { tolerance_db, .. } = remarks[0] else {
+        panic!("the first remark should be GainsMatched: {:?}", remarks[0]);
     };
     assert_eq!(tolerance_db, Some(3.0));
-    assert!(said.iter().any(|remark| remark.code() == "loop-agrees"));
+    assert!(remarks.iter().any(|remark| remark.code() == "loop-agrees"));
 }

@@ -22,22 +22,23 @@ fn response(model: &StateSpace, grid: &FrequencyGrid) -> Values {
 }
 
 /// Returns a matrix with entries from a sine: irregular, and the same on every machine.
-fn matrix(rows: usize, columns: usize, seed: f64) -> DMatrix<f64> {
+fn sine_matrix(rows: usize, columns: usize, seed: f64) -> DMatrix<f64> {
     DMatrix::from_fn(rows, columns, |row, column| {
         (seed + 7.3 * row as f64 + 2.9 * (column * column) as f64).sin()
     })
 }
 
-fn model(order: usize, outputs: usize, inputs: usize) -> StateSpace {
-    let a = matrix(order, order, 0.3) - DMatrix::identity(order, order) * 2.0;
-    let b = matrix(order, inputs, 1.1);
-    let c = matrix(outputs, order, 2.3);
-    let d = matrix(outputs, inputs, 3.7);
+/// Returns a model with entries from [`sine_matrix`]; the diagonal of A is shifted by -2.
+fn sine_model(order: usize, outputs: usize, inputs: usize) -> StateSpace {
+    let a = sine_matrix(order, order, 0.3) - DMatrix::identity(order, order) * 2.0;
+    let b = sine_matrix(order, inputs, 1.1);
+    let c = sine_matrix(outputs, order, 2.3);
+    let d = sine_matrix(outputs, inputs, 3.7);
     StateSpace::new(a, b, c, d).unwrap()
 }
 
 /// Computes `C (j omega I - A)^-1 B + D` by LU decomposition of the whole matrix.
-fn dense(model: &StateSpace, omega: f64) -> DMatrix<Complex<f64>> {
+fn dense_response(model: &StateSpace, omega: f64) -> DMatrix<Complex<f64>> {
     let complex = |matrix: &DMatrix<f64>| matrix.map(|entry| Complex::new(entry, 0.0));
     let n = model.order();
     let shifted = DMatrix::identity(n, n) * Complex::new(0.0, omega) - complex(model.a());
@@ -51,7 +52,7 @@ fn difference_from_dense(model: &StateSpace, grid: &FrequencyGrid) -> f64 {
     let mut difference = 0.0_f64;
     let mut largest = 0.0_f64;
     for (k, omega) in grid.omega().iter().enumerate() {
-        let expected = dense(model, *omega);
+        let expected = dense_response(model, *omega);
         for (pair, values) in found.iter() {
             let expected = expected[(pair.output, pair.input)];
             assert!(values[k].is_finite(), "{omega} rad/s");
@@ -82,7 +83,7 @@ struct Golden {
 }
 
 impl Golden {
-    fn of(case: &Value) -> Self {
+    fn from_case(case: &Value) -> Self {
         let complex = |value: &Value| {
             let parts = numbers(value);
             Complex::new(parts[0], parts[1])
@@ -131,7 +132,7 @@ fn every_instruction_set_agrees_with_50_digit_arithmetic_at_every_remainder_leng
         };
         models += 1;
         let name = &case["model"];
-        let golden = Golden::of(case);
+        let golden = Golden::from_case(case);
         for arch in instruction_sets() {
             // Every remainder modulo 8, the number of frequencies in a group, and all frequencies
             // of the case.
@@ -149,7 +150,7 @@ fn every_instruction_set_agrees_with_50_digit_arithmetic_at_every_remainder_leng
     }
     assert_eq!(
         models, 8,
-        "those of the literature, the near-defective one, three of the example"
+        "expected four models of the literature, the near-defective one and three of the example"
     );
 }
 
@@ -159,8 +160,9 @@ fn every_shape_agrees_with_dense_lu() {
         for (outputs, inputs) in [(1, 1), (6, 4), (4, 6), (2, 5), (9, 7)] {
             // From far below the poles to far above them.
             let difference =
-                difference_from_dense(&model(order, outputs, inputs), &grid(1e-2, 1e3, 43));
-            // The rounding error is at most 3e-11 (`n tau` times 1e-16); nearby poles amplify it.
+                difference_from_dense(&sine_model(order, outputs, inputs), &grid(1e-2, 1e3, 43));
+            // The rounding error is at most 3e-11: 2^18, the pivot threshold times the order, times
+            // the unit roundoff 1.1e-16. Nearby poles amplify it.
             assert!(
                 difference < 1e-10,
                 "{order} states, {outputs} x {inputs}: {difference:.1e}"
@@ -183,16 +185,23 @@ enum Structure {
 }
 
 prop_compose! {
+    // Models of 1 to 24 states, 1 to 6 inputs and 1 to 8 outputs with entries from -1.5 to 1.5 before
+    // the special structure; the diagonal of A is shifted by -2.
     fn random_model()(
         n in 1..25usize, m in 1..7usize, p in 1..9usize,
         structure in prop_oneof![
-            Just(Structure::Full), Just(Structure::Sparse), Just(Structure::Units), Just(Structure::WeakChain),
-            Just(Structure::TwoParts)
+            Just(Structure::Full),
+            Just(Structure::Sparse),
+            Just(Structure::Units),
+            Just(Structure::WeakChain),
+            Just(Structure::TwoParts),
         ]
     )(
-        numbers in prop::collection::vec(-1.5..1.5f64, (n + p) * (n + m)), sizes in prop::collection::vec(0.0..1.0f64, n * n),
+        numbers in prop::collection::vec(-1.5..1.5f64, (n + p) * (n + m)),
+        sizes in prop::collection::vec(0.0..1.0f64, n * n),
         n in Just(n), m in Just(m), p in Just(p), structure in Just(structure)
     ) -> StateSpace {
+        // [A B; C D]
         let all = DMatrix::from_vec(n + p, n + m, numbers);
         let a = DMatrix::from_fn(n, n, |row, column| {
             let entry = all[(row, column)];
@@ -200,11 +209,14 @@ prop_compose! {
             match structure {
                 _ if row == column => entry - 2.0,
                 Structure::Full => entry,
-                Structure::Sparse => if size < 0.8 { 0.0 } else { entry },
+                Structure::Sparse if size < 0.8 => 0.0,
+                Structure::Sparse => entry,
                 Structure::Units => entry * 10_f64.powf(24.0 * (sizes[row] - sizes[column])),
                 Structure::WeakChain if row > column + 1 => 0.0,
-                Structure::WeakChain => if row > column { entry * 10_f64.powf(-20.0 * size) } else { entry },
-                Structure::TwoParts => if (row < n / 2) == (column < n / 2) { entry } else { 0.0 },
+                Structure::WeakChain if row > column => entry * 10_f64.powf(-20.0 * size),
+                Structure::WeakChain => entry,
+                Structure::TwoParts if (row < n / 2) == (column < n / 2) => entry,
+                Structure::TwoParts => 0.0,
             }
         });
         let b = all.view((0, n), (n, m));
@@ -219,7 +231,8 @@ proptest! {
     fn models_of_any_structure_agree_with_dense_lu(
         model in random_model(), points in 2..40usize, low in -3.0..1.0f64, decades in 0.1..5.0f64
     ) {
-        let difference = difference_from_dense(&model, &grid(10_f64.powf(low), 10_f64.powf(low + decades), points));
+        let grid = grid(10_f64.powf(low), 10_f64.powf(low + decades), points);
+        let difference = difference_from_dense(&model, &grid);
         // Limit from the specification; the difference was below 1e-10 for 20 000 such models.
         prop_assert!(difference < 1e-9, "{difference:.1e}");
     }
@@ -227,7 +240,7 @@ proptest! {
 
 #[test]
 fn every_number_of_frequencies_agrees_with_dense_lu() {
-    let model = model(10, 6, 4);
+    let model = sine_model(10, 6, 4);
     for points in 2..=35 {
         let difference = difference_from_dense(&model, &grid(0.1, 100.0, points));
         // Rounding error, as in `every_shape_agrees_with_dense_lu`.
@@ -236,8 +249,8 @@ fn every_number_of_frequencies_agrees_with_dense_lu() {
 }
 
 #[test]
-fn the_rest_of_the_grid_changes_a_value_by_rounding_only() {
-    let model = model(21, 6, 4);
+fn other_frequencies_of_the_grid_change_a_value_by_rounding_only() {
+    let model = sine_model(21, 6, 4);
     let whole = grid(0.01, 1000.0, 53);
     let values = response(&model, &whole);
     let largest = values
@@ -259,8 +272,8 @@ fn the_rest_of_the_grid_changes_a_value_by_rounding_only() {
 }
 
 #[test]
-fn runs_and_threads_give_the_same_bits() {
-    let model = model(30, 6, 4);
+fn concurrent_evaluations_give_the_same_bits() {
+    let model = sine_model(30, 6, 4);
     let grid = grid(0.1, 100.0, 101);
     let expected = response(&model, &grid);
     std::thread::scope(|scope| {
@@ -275,7 +288,7 @@ fn runs_and_threads_give_the_same_bits() {
 
 #[test]
 fn a_static_gain_has_the_same_value_at_every_frequency() {
-    let d = matrix(2, 3, 0.0);
+    let d = sine_matrix(2, 3, 0.0);
     let gain = StateSpace::new(
         DMatrix::zeros(0, 0),
         DMatrix::zeros(0, 3),
@@ -292,7 +305,7 @@ fn a_static_gain_has_the_same_value_at_every_frequency() {
 }
 
 /// Zeros and finite numbers of any magnitude.
-fn any_size() -> impl Strategy<Value = f64> {
+fn any_magnitude() -> impl Strategy<Value = f64> {
     prop_oneof![
         1 => Just(0.0),
         9 => (-300.0..300.0_f64, any::<bool>()).prop_map(|(size, negative)| {
@@ -306,32 +319,41 @@ const LARGEST_ENTRY: f64 = 1e75;
 
 proptest! {
     #[test]
-    fn entries_of_any_size_end_quickly_in_numbers_or_in_none(
+    fn entries_beyond_the_limit_give_no_response_and_no_entry_takes_long(
         (n, m, p) in (1..9usize, 1..5usize, 1..5usize),
-        numbers in prop::collection::vec(any_size(), 12 * 12), cut in any::<bool>(),
+        numbers in prop::collection::vec(any_magnitude(), 12 * 12), clamped in any::<bool>(),
     ) {
         let begun = std::time::Instant::now();
         let entry = |row: usize, column: usize| {
             let number: f64 = numbers[12 * row + column];
-            if cut { number.clamp(-LARGEST_ENTRY, LARGEST_ENTRY) } else { number }
+            if clamped { number.clamp(-LARGEST_ENTRY, LARGEST_ENTRY) } else { number }
         };
         let part = |row: usize, column: usize, rows, columns| {
             DMatrix::from_fn(rows, columns, |r, c| entry(row + r, column + c))
         };
         let parts = [part(0, 0, n, n), part(0, n, n, m), part(n, 0, p, n), part(n, n, p, m)];
-        let computable = parts.iter().flat_map(|part| part.iter()).all(|entry| entry.abs() <= LARGEST_ENTRY);
+        let mut entries = parts.iter().flat_map(|part| part.iter());
+        let computable = entries.all(|entry| entry.abs() <= LARGEST_ENTRY);
         let [a, b, c, d] = parts;
-        let response = FrequencyResponse::from_dynamics(&Dynamics::StateSpace(StateSpace::new(a, b, c, d).unwrap()), &grid(0.5, 12.0, 20));
-        let none = response.not_finite();
-        prop_assert!(computable || none.len() == p * m, "what is too large is refused whole");
+        let dynamics = Dynamics::StateSpace(StateSpace::new(a, b, c, d).unwrap());
+        let response = FrequencyResponse::from_dynamics(&dynamics, &grid(0.5, 12.0, 20));
+        let not_finite = response.not_finite();
+        prop_assert!(
+            computable || not_finite.len() == p * m,
+            "an entry is too large, yet a response is finite"
+        );
         // A generous limit: the computation takes about a thousandth of this time.
         prop_assert!(begun.elapsed().as_secs_f64() < 5.0);
     }
 
     #[test]
-    fn a_lag_of_any_size_is_computed_right_or_not_at_all(a in any_size(), b in any_size(), c in any_size(), d in any_size()) {
-        let one = |entry: f64| DMatrix::from_element(1, 1, entry.clamp(-LARGEST_ENTRY, LARGEST_ENTRY));
-        let lag = StateSpace::new(one(a), one(b), one(c), one(d)).unwrap();
+    fn a_first_order_lag_of_any_magnitude_is_accurate_or_not_finite(
+        a in any_magnitude(), b in any_magnitude(), c in any_magnitude(), d in any_magnitude(),
+    ) {
+        let scalar = |entry: f64| {
+            DMatrix::from_element(1, 1, entry.clamp(-LARGEST_ENTRY, LARGEST_ENTRY))
+        };
+        let lag = StateSpace::new(scalar(a), scalar(b), scalar(c), scalar(d)).unwrap();
         let grid = grid(0.5, 12.0, 9);
         for (omega, value) in grid.omega().iter().zip(&response(&lag, &grid)[Pair::new(0, 0)]) {
             let through = lag.c()[0] * lag.b()[0] / Complex::new(-lag.a()[0], *omega);
@@ -339,35 +361,53 @@ proptest! {
             // Rounding of a few operations; below the smallest normal number, the error is
             // absolute.
             let error = (value - (through + lag.d()[0])).norm();
-            prop_assert!(!value.is_finite() || error <= 1e-14 * largest + 1e-300, "{value} for {through} + {}", lag.d()[0]);
+            prop_assert!(
+                !value.is_finite() || error <= 1e-14 * largest + 1e-300,
+                "{value} for {through} + {}", lag.d()[0]
+            );
         }
     }
 
     #[test]
-    fn units_of_time_states_inputs_and_outputs_do_not_matter_whatever_their_size(
-        model in random_model(), (time, input, output) in (-430..150i32, -240..240i32, -240..240i32),
+    fn scaling_time_states_inputs_and_outputs_by_powers_of_two_only_scales_the_response(
+        model in random_model(),
+        (time, input, output) in (-430..150i32, -240..240i32, -240..240i32),
         units in prop::collection::vec(-10..10i32, 25),
     ) {
-        let two = |power: i32| 2_f64.powi(power);
+        let two_to = |power: i32| 2_f64.powi(power);
         let n = model.order();
         let a = DMatrix::from_fn(n, n, |row, column| {
             // Scale in two steps: a single power of two could underflow (below 2^-1022).
-            model.a()[(row, column)] * two(time) * two(units[row] - units[column])
+            model.a()[(row, column)] * two_to(time) * two_to(units[row] - units[column])
         });
-        let b = DMatrix::from_fn(n, model.inputs(), |row, column| model.b()[(row, column)] * two(input) * two(units[row]));
-        let c = DMatrix::from_fn(model.outputs(), n, |row, column| model.c()[(row, column)] * two(output) * two(-units[column]));
-        let none = model.d() * 0.0;
-        prop_assume!([&a, &b, &c].iter().all(|part| part.iter().all(|entry| entry.abs() <= LARGEST_ENTRY)));
-        let plain = StateSpace::new(model.a().clone(), model.b().clone(), model.c().clone(), none.clone()).unwrap();
-        let scaled = StateSpace::new(a, b, c, none).unwrap();
+        let b = DMatrix::from_fn(n, model.inputs(), |row, column| {
+            model.b()[(row, column)] * two_to(input) * two_to(units[row])
+        });
+        let c = DMatrix::from_fn(model.outputs(), n, |row, column| {
+            model.c()[(row, column)] * two_to(output) * two_to(-units[column])
+        });
+        let no_feedthrough = model.d() * 0.0;
+        let is_accepted =
+            |part: &DMatrix<f64>| part.iter().all(|entry| entry.abs() <= LARGEST_ENTRY);
+        prop_assume!(is_accepted(&a) && is_accepted(&b) && is_accepted(&c));
+        let plain = StateSpace::new(
+            model.a().clone(),
+            model.b().clone(),
+            model.c().clone(),
+            no_feedthrough.clone(),
+        )
+        .unwrap();
+        let scaled = StateSpace::new(a, b, c, no_feedthrough).unwrap();
         for omega in [0.5, 3.0] {
-            let expected = dense(&plain, omega);
+            let expected = dense_response(&plain, omega);
             let largest = expected.iter().map(|value| value.norm()).fold(0.0, f64::max);
-            let found = response(&scaled, &grid(omega * two(time), 2.0 * omega * two(time), 2));
+            let scaled_omega = omega * two_to(time);
+            let found = response(&scaled, &grid(scaled_omega, 2.0 * scaled_omega, 2));
             for (pair, values) in found.iter() {
                 // Scale back in two steps, to avoid underflow as above.
-                let half = (input + output - time) / 2;
-                let value = values[0] * two(-half) * two(half - (input + output - time));
+                let power = input + output - time;
+                let half = power / 2;
+                let value = values[0] * two_to(-half) * two_to(half - power);
                 let error = (value - expected[(pair.output, pair.input)]).norm();
                 // The rounding error is at most 3e-11 of the balanced A, but nearby poles amplify
                 // it: the maximum in 4000 cases was 1.4e-9. A value lost by underflow or overflow

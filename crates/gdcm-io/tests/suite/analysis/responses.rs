@@ -1,7 +1,10 @@
 //! Frequency responses against 50-digit arithmetic.
 
+use gdcm_model::dataset::Band;
+
 use super::*;
 
+/// Frequency responses in 50-digit arithmetic (source: `tests/data/README.md`).
 pub const GOLDEN: &str =
     include_str!("../../../../../tests/data/reference/frequency-response-golden.json");
 
@@ -10,7 +13,7 @@ fn matrix(value: &Value) -> DMatrix<f64> {
     DMatrix::from_fn(rows.len(), rows[0].len(), |row, column| rows[row][column])
 }
 
-/// Returns a model from the literature, by file name.
+/// Returns a model from the literature, or the near-defective one, by file name.
 pub fn model_of(file: &str) -> Dynamics {
     let value = json(match file {
         "compleib_HE2_AH64_130kt.json" => {
@@ -71,7 +74,7 @@ pub fn dynamics_of(case: &Value) -> Dynamics {
 /// Returns the response at a single frequency: the lower end of a grid of two points, since a grid
 /// contains both ends of its band.
 fn response_at(dynamics: &Dynamics, omega: f64) -> PairTable<Complex<f64>> {
-    let band = gdcm_model::dataset::Band::new(omega, 2.0 * omega).unwrap();
+    let band = Band::new(omega, 2.0 * omega).unwrap();
     let response = FrequencyResponse::from_dynamics(dynamics, &FrequencyGrid::logarithmic(band, 2));
     response.curves().map(|_, values| values[0])
 }
@@ -102,7 +105,7 @@ fn responses_agree_with_50_digit_arithmetic_to_a_billionth_of_the_largest() {
         }
         assert!(
             largest > 0.0 && error <= 1e-9 * largest,
-            "{}: {:.1e}",
+            "{}: relative error {:.1e}",
             case["model"],
             error / largest
         );

@@ -110,7 +110,7 @@ fn a_condition_left_out_of_the_schedule_is_not_counted_in_it_but_is_still_assess
 }
 
 #[test]
-fn every_condition_out_of_the_schedule_leaves_corrections_without_one() {
+fn without_scheduled_conditions_the_corrections_have_no_schedule_and_say_why() {
     let mut study = short_study();
     let mut engine = Engine::default();
     for condition in (1..=11).map(ConditionId) {
@@ -125,7 +125,7 @@ fn every_condition_out_of_the_schedule_leaves_corrections_without_one() {
     let written = corrections(&analysis, "", &BTreeSet::from([ConditionId(1)]));
     assert!(written["schedule"].is_null());
     let Err(error) = &analysis.schedule else {
-        panic!("there is a schedule")
+        panic!("there should be no schedule")
     };
     assert_eq!(error.code(), "no-condition-to-schedule");
     assert_eq!(
@@ -135,7 +135,7 @@ fn every_condition_out_of_the_schedule_leaves_corrections_without_one() {
 }
 
 #[test]
-fn corrections_of_chosen_conditions_hold_those_and_the_schedule_of_all() {
+fn corrections_of_chosen_conditions_contain_the_schedule_of_all() {
     let analysis = analyze(&mut Engine::default(), &short_study());
     let written = corrections(
         &analysis,
@@ -149,7 +149,7 @@ fn corrections_of_chosen_conditions_hold_those_and_the_schedule_of_all() {
     assert_eq!(
         ids,
         [3.0, 10.0],
-        "in the order of the dataset, and an id that is not there passed over"
+        "expected the order of the dataset, without the unknown id 400"
     );
     assert_eq!(
         written["schedule"]["airspeed_range_kt"],
@@ -157,48 +157,50 @@ fn corrections_of_chosen_conditions_hold_those_and_the_schedule_of_all() {
     );
 }
 
-/// Keeps the results passed on during an analysis, which it cancels after `steps` steps.
-struct Onlooker {
+/// Collects the results reported during an analysis, which it cancels after `steps` steps.
+struct Observer {
     first: ConditionId,
     steps: usize,
-    seen: Mutex<Vec<Result<ConditionAnalysis, ConditionFailure>>>,
-    heard: AtomicUsize,
+    reported: Mutex<Vec<Result<ConditionAnalysis, ConditionFailure>>>,
+    steps_done: AtomicUsize,
 }
 
-impl Onlooker {
+impl Observer {
     fn new(first: ConditionId, steps: usize) -> Self {
         Self {
             first,
             steps,
-            seen: Mutex::default(),
-            heard: AtomicUsize::new(0),
+            reported: Mutex::default(),
+            steps_done: AtomicUsize::new(0),
         }
     }
 }
 
-impl Progress for Onlooker {
+impl Progress for Observer {
     fn cancelled(&self) -> bool {
-        self.heard.load(Ordering::Relaxed) >= self.steps
+        self.steps_done.load(Ordering::Relaxed) >= self.steps
     }
 
     fn advanced(&self, done: usize, total: usize) {
         assert!(done <= total);
-        self.heard.store(done, Ordering::Relaxed);
+        self.steps_done.store(done, Ordering::Relaxed);
     }
 }
 
-impl Onlooker {
+impl Observer {
+    /// Analyses the study, the condition `first` before all others.
     fn analyze(&self, engine: &mut Engine, study: &Study) -> Result<Analysis, Cancelled> {
-        let tell = |result: &Result<ConditionAnalysis, ConditionFailure>| {
-            // At this point only the condition requested first has been analysed.
-            assert!(self.heard.load(Ordering::Relaxed) <= 100);
-            self.seen.lock().unwrap().push(result.clone());
+        let report = |result: &Result<ConditionAnalysis, ConditionFailure>| {
+            // At this point only the condition requested first has been analysed, in at most 100 of
+            // the steps.
+            assert!(self.steps_done.load(Ordering::Relaxed) <= 100);
+            self.reported.lock().unwrap().push(result.clone());
         };
         engine.analyze_first(
             study,
             Some(WantedFirst {
                 condition: self.first,
-                tell: &tell,
+                tell: &report,
             }),
             self,
         )
@@ -206,7 +208,7 @@ impl Onlooker {
 }
 
 #[test]
-fn results_have_the_same_bits_whatever_the_number_of_threads() {
+fn results_have_the_same_bits_for_every_number_of_threads() {
     let study = short_study();
     let alone = analyze(&mut Engine::default(), &study);
     for threads in [1, 2, 3, 7] {
@@ -226,30 +228,30 @@ fn results_have_the_same_bits_whatever_the_number_of_threads() {
 }
 
 #[test]
-fn the_condition_wanted_first_is_told_first_and_as_the_whole_analysis_has_it() {
+fn the_condition_wanted_first_is_reported_once_with_its_final_result() {
     let study = short_study();
-    let onlooker = Onlooker::new(ConditionId(10), usize::MAX);
-    let analysis = onlooker
+    let observer = Observer::new(ConditionId(10), usize::MAX);
+    let analysis = observer
         .analyze(&mut Engine::with_executor(Box::new(EveryCore)), &study)
         .unwrap();
     assert_eq!(
-        onlooker.seen.into_inner().unwrap(),
+        observer.reported.into_inner().unwrap(),
         [analysis.conditions[&ConditionId(10)].clone()]
     );
     let alone = analyze(&mut Engine::default(), &study);
     assert_eq!(
         analysis.conditions, alone.conditions,
-        "the order of work is not the order of results"
+        "the condition analysed first should not change the results"
     );
 }
 
 #[test]
-fn an_analysis_that_is_stopped_halfway_goes_on_from_there_with_the_same_result() {
+fn an_engine_whose_analyses_were_cancelled_gives_the_same_result_as_a_new_one() {
     let study = short_study();
     let mut engine = Engine::default();
     for steps in [1, 100, 400] {
         assert_eq!(
-            Onlooker::new(ConditionId(1), steps).analyze(&mut engine, &study),
+            Observer::new(ConditionId(1), steps).analyze(&mut engine, &study),
             Err(Cancelled)
         );
     }
@@ -271,7 +273,7 @@ fn reversed(dataset: &Dataset) -> Dataset {
 }
 
 #[test]
-fn the_order_of_conditions_and_models_touches_no_decision_and_no_result() {
+fn the_order_of_conditions_and_models_changes_no_decision_and_no_result() {
     let mut study = short_study();
     let mut engine = Engine::default();
     let tenth = |kind, name: &str| ModelId::new(ConditionId(10), kind, name);
@@ -308,7 +310,7 @@ fn the_order_of_conditions_and_models_touches_no_decision_and_no_result() {
 }
 
 #[test]
-fn engines_that_share_models_hold_one_response_of_each() {
+fn engines_that_share_known_models_compute_each_response_once() {
     let study = short_study();
     let known = KnownModels::default();
     let curves = |mut engine: Engine| {
@@ -322,25 +324,29 @@ fn engines_that_share_models_hold_one_response_of_each() {
     let (first, before) = curves(Engine::default().sharing(&known));
     let (second, after) = curves(Engine::default().sharing(&known));
     let (_, apart) = curves(Engine::default());
-    let is_one = |a: &ConditionCurves, b: &ConditionCurves| {
+    let share_responses = |a: &ConditionCurves, b: &ConditionCurves| {
         a.physics
             .iter()
             .chain(&a.identified)
             .zip(b.physics.iter().chain(&b.identified))
             .all(|(a, b)| Arc::ptr_eq(a, b))
     };
-    assert!(is_one(&before, &after) && !is_one(&before, &apart));
+    assert!(share_responses(&before, &after));
+    assert!(!share_responses(&before, &apart));
     assert_eq!(
         (&before.physics, &before.identified),
         (&apart.physics, &apart.identified)
     );
     drop((first, second));
-    let (_, anew) = curves(Engine::default().sharing(&known));
-    assert!(!is_one(&before, &anew), "what no engine holds is not kept");
+    let (_, recomputed) = curves(Engine::default().sharing(&known));
+    assert!(
+        !share_responses(&before, &recomputed),
+        "responses that no engine uses should not be kept"
+    );
 }
 
 #[test]
-fn of_a_dataset_with_one_other_model_one_response_is_computed() {
+fn after_one_model_is_replaced_only_its_response_is_computed_again() {
     let study = short_study();
     let mut engine = Engine::default();
     let band = study.settings.band;
@@ -384,7 +390,7 @@ fn of_a_dataset_with_one_other_model_one_response_is_computed() {
     let expected: Vec<bool> = (0..kept.len()).map(|index| index != 4).collect();
     assert_eq!(
         kept, expected,
-        "every response but that of the model replaced is the one computed before"
+        "only the response of the replaced model should be computed again"
     );
     assert!(
         before

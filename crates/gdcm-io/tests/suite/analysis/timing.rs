@@ -6,8 +6,8 @@ use std::sync::Arc;
 use serde_json::json;
 
 use gdcm_io::{DatasetOrigin, load_dataset_bytes};
-use gdcm_model::dataset::Dataset;
 use gdcm_model::dataset::state_space::Timing;
+use gdcm_model::dataset::{Dataset, ModelId};
 use gdcm_model::executor::Sequential;
 use gdcm_study::results::caution::{Caution, NotFinite};
 use gdcm_study::stages::model_cautions::cautions_of_models;
@@ -20,13 +20,13 @@ const FIRST: ConditionId = ConditionId(7);
 
 /// Returns the small dataset with other identified models in its first condition: the nominal model
 /// with `keys` added, followed by the models in `more`.
-fn dataset(keys: &Value, more: &[Value]) -> Arc<Dataset> {
+fn small_dataset_with(keys: &Value, more: &[Value]) -> Arc<Dataset> {
     let mut file = json(SMALL);
     let mut flight = file["conditions"][0]["physics_models"][0].clone();
     let model = flight.as_object_mut().unwrap();
-    ["role", "perturbation"]
-        .iter()
-        .for_each(|key| drop(model.remove(*key)));
+    for key in ["role", "perturbation"] {
+        model.remove(key);
+    }
     model.extend(keys.as_object().unwrap().clone());
     model.insert("name".to_owned(), json!("flight"));
     file["conditions"][0]["identified_models"] =
@@ -42,7 +42,7 @@ fn dataset(keys: &Value, more: &[Value]) -> Arc<Dataset> {
 fn analysis_of(dataset: &Arc<Dataset>) -> Analysis {
     let mut study = Study::new(Arc::clone(dataset));
     study
-        .apply(&Edit::Pin(gdcm_model::dataset::ModelId::new(
+        .apply(&Edit::Pin(ModelId::new(
             FIRST,
             BundleKind::Physics,
             "nominal",
@@ -51,18 +51,18 @@ fn analysis_of(dataset: &Arc<Dataset>) -> Analysis {
     analyze(&mut Engine::default(), &study)
 }
 
-fn first(analysis: &Analysis) -> &ConditionAnalysis {
+fn first_condition(analysis: &Analysis) -> &ConditionAnalysis {
     analysis.condition(FIRST).unwrap()
 }
 
 #[test]
-fn delays_of_the_channels_are_the_delta_delays() {
-    let dataset = dataset(
+fn the_delta_delay_is_the_sum_of_the_channel_delays() {
+    let dataset = small_dataset_with(
         &json!({"input_delays_s": [0.03, 0.0], "output_delays_s": [0.01, 0.02]}),
         &[],
     );
     let analysis = analysis_of(&dataset);
-    let delta = &first(&analysis).comparison.delta;
+    let delta = &first_condition(&analysis).comparison.delta;
     for (pair, gain) in delta.gain.iter().filter(|(_, gain)| gain.is_some()) {
         let expected = [0.03, 0.0][pair.input] + [0.01, 0.02][pair.output];
         // Rounding: a phase of a few radians is unwrapped and divided by at least 0.5 rad/s.
@@ -75,23 +75,25 @@ fn delays_of_the_channels_are_the_delta_delays() {
 }
 
 #[test]
-fn a_model_sampled_too_slowly_for_the_band_is_set_aside_and_the_reason_said() {
+fn a_model_sampled_too_slowly_for_the_band_is_set_aside_with_the_reason() {
     let mut slow = json(SMALL)["conditions"][0]["identified_models"][0].clone();
     slow["name"] = json!("slow");
     slow["sample_time_s"] = json!(0.5);
-    let dataset = dataset(&json!({}), &[slow]);
+    let dataset = small_dataset_with(&json!({}), &[slow]);
     let analysis = analysis_of(&dataset);
-    let result = first(&analysis);
+    let result = first_condition(&analysis);
     assert_eq!(result.representative_name(BundleKind::Identified), "flight");
+    // The band ends above the Nyquist frequency.
     let sampled = NotFinite::Sampled {
         sample_time_s: 0.5,
         nyquist_rad_s: std::f64::consts::PI / 0.5,
     };
+    let is_expected = |caution: &Caution| match caution {
+        Caution::SetAside { model, why, .. } => model.name == "slow" && *why == Some(sampled),
+        _ => false,
+    };
     assert!(
-        result.cautions.iter().any(|caution| matches!(
-            caution,
-            Caution::SetAside { model, why, .. } if model.name == "slow" && *why == Some(sampled)
-        )),
+        result.cautions.iter().any(is_expected),
         "{:?}",
         result.cautions
     );
@@ -99,24 +101,22 @@ fn a_model_sampled_too_slowly_for_the_band_is_set_aside_and_the_reason_said() {
     let execution = Execution::new(&Sequential, &Unobserved, 0);
     let cautions = cautions_of_models(&study, &execution).unwrap();
     assert!(
-        cautions.iter().any(|(id, caution)| *id == FIRST
-            && matches!(
-                caution,
-                Caution::SetAside { model, why, .. } if model.name == "slow" && *why == Some(sampled)
-            )),
+        cautions
+            .iter()
+            .any(|(id, caution)| *id == FIRST && is_expected(caution)),
         "{cautions:?}"
     );
 }
 
 #[test]
-fn two_models_that_differ_only_in_their_timing_are_two_models() {
+fn models_that_differ_only_in_their_timing_have_different_fingerprints() {
     let models = [
         json!({}),
         json!({"sample_time_s": 0.01}),
         json!({"output_delays_s": [0.0, 0.01]}),
     ];
     let fingerprint = |keys: &Value| {
-        let dataset = dataset(keys, &[]);
+        let dataset = small_dataset_with(keys, &[]);
         dataset
             .condition(FIRST)
             .unwrap()
@@ -128,21 +128,21 @@ fn two_models_that_differ_only_in_their_timing_are_two_models() {
     assert_eq!(
         plain,
         fingerprint(&json!({"input_delays_s": [0.0, 0.0]})),
-        "no delay at all"
+        "delays of zero should count as no delays"
     );
 }
 
 #[test]
-fn a_discrete_model_has_the_response_of_its_definition() {
+fn a_discrete_model_has_the_response_of_its_transfer_function_on_the_unit_circle() {
     let keys = json!({"sample_time_s": 0.1, "input_delays_s": [0.05, 0.0]});
-    let dataset = dataset(&keys, &[]);
+    let dataset = small_dataset_with(&keys, &[]);
     let dynamics = &dataset
         .condition(FIRST)
         .unwrap()
         .bundle(BundleKind::Identified)[0]
         .dynamics;
     let Dynamics::StateSpace(model) = dynamics else {
-        panic!("it has matrices")
+        panic!("the model should have matrices")
     };
     assert_eq!(
         model.timing(),
@@ -164,6 +164,7 @@ fn a_discrete_model_has_the_response_of_its_definition() {
         for pair in response.curves().pairs() {
             let delay = Complex::from_polar(1.0, -omega * [0.05, 0.0][pair.input]);
             let expected = expected[(pair.output, pair.input)] * delay;
+            // Rounding of the solution of two equations.
             assert!(
                 (response.curve(pair)[k] - expected).norm() <= 1e-12 * expected.norm(),
                 "{pair:?} {omega}"

@@ -18,10 +18,12 @@ fn nominal_of_10() -> ModelId {
 }
 
 fn apply(study: &mut Study, edits: &[Edit]) {
-    edits.iter().for_each(|edit| study.apply(edit).unwrap());
+    for edit in edits {
+        study.apply(edit).unwrap();
+    }
 }
 
-fn keep(name: &str) -> Edit {
+fn store(name: &str) -> Edit {
     Edit::StoreVariant {
         name: name.to_owned(),
     }
@@ -89,14 +91,14 @@ fn a_rejection_carries_its_reason_and_a_restored_model_has_none() {
     assert_eq!(
         study.reason(&model),
         None,
-        "the old reason went with the old rejection"
+        "restoring the model should remove the reason"
     );
     apply(&mut study, &[reason("a"), reason("")]);
     assert_eq!(study.reason(&model), None);
 }
 
 #[test]
-fn a_refused_rejection_leaves_no_reason_and_undo_takes_both_back() {
+fn undo_reverts_a_rejection_and_its_reason_and_a_refused_one_changes_nothing() {
     let mut study = study_of_example();
     let mut history: History = History::default();
     let edit = Edit::RejectBecause {
@@ -108,17 +110,17 @@ fn a_refused_rejection_leaves_no_reason_and_undo_takes_both_back() {
     history.record(before.clone(), &edit);
     assert_eq!(history.undo(&study, |()| ()), Some(before.clone()));
     assert_eq!(history.redo(&before, |()| ()), Some(study.clone()));
-    let other = Edit::RejectBecause {
+    let too_long = Edit::RejectBecause {
         model: nominal_of_10(),
         reason: "x".repeat(LONGEST_REASON + 1),
     };
     let mut fresh = study_of_example();
-    assert!(fresh.apply(&other).is_err());
+    assert!(fresh.apply(&too_long).is_err());
     assert_eq!(fresh, study_of_example());
 }
 
 #[test]
-fn words_change_no_result_and_stand_in_the_results_beside_the_rejected() {
+fn reasons_and_variants_change_no_result_and_reasons_are_exported() {
     let mut study = study_of_example();
     let mut engine = Engine::default();
     apply(
@@ -130,15 +132,15 @@ fn words_change_no_result_and_stand_in_the_results_beside_the_rejected() {
         &mut study,
         &[
             Edit::SetReason(nominal_of_10(), "step".to_owned()),
-            keep("a"),
+            store("a"),
         ],
     );
     let with = analyze(&mut engine, &study);
-    let a = without.condition(ConditionId(10)).unwrap();
-    let b = with.condition(ConditionId(10)).unwrap();
+    let before = without.condition(ConditionId(10)).unwrap();
+    let after = with.condition(ConditionId(10)).unwrap();
     assert!(
-        Arc::ptr_eq(&a.comparison, &b.comparison),
-        "nothing is computed anew"
+        Arc::ptr_eq(&before.comparison, &after.comparison),
+        "the comparison should not be computed again"
     );
     let folder = tempfile::tempdir().unwrap();
     let outputs = gdcm_io::output_set::OutputSet::new(gdcm_io::Existing::Replace, Vec::new());
@@ -158,13 +160,13 @@ fn words_change_no_result_and_stand_in_the_results_beside_the_rejected() {
 }
 
 #[test]
-fn a_variant_brings_back_the_decisions_that_were_kept_and_stays() {
+fn applying_a_variant_restores_its_decisions_and_keeps_the_variant() {
     let mut study = study_of_example();
     apply(
         &mut study,
         &[
             setting_table::ALPHA_GAIN.to(0.1),
-            keep(" soft "),
+            store(" soft "),
             setting_table::ALPHA_GAIN.to(9.0),
         ],
     );
@@ -181,20 +183,20 @@ fn a_variant_brings_back_the_decisions_that_were_kept_and_stays() {
 }
 
 #[test]
-fn the_name_of_a_variant_is_given_once_and_can_be_changed_and_removed() {
+fn names_of_variants_are_unique_and_variants_can_be_renamed_and_removed() {
     let mut study = study_of_example();
-    apply(&mut study, &[keep("a"), keep("b")]);
+    apply(&mut study, &[store("a"), store("b")]);
     let refused = |study: &mut Study, edit: Edit| study.apply(&edit).unwrap_err();
     let exists = |name: &str| EditRefusal::VariantExists {
         name: name.to_owned(),
     };
-    assert_eq!(refused(&mut study, keep("a")), exists("a"));
+    assert_eq!(refused(&mut study, store("a")), exists("a"));
     assert_eq!(
-        refused(&mut study, keep("  ")),
+        refused(&mut study, store("  ")),
         EditRefusal::VariantWithoutName
     );
     assert!(matches!(
-        refused(&mut study, keep(&"x".repeat(61))),
+        refused(&mut study, store(&"x".repeat(61))),
         EditRefusal::TooLong {
             most: 60,
             found: 61,
@@ -225,8 +227,11 @@ fn the_name_of_a_variant_is_given_once_and_can_be_changed_and_removed() {
         ["c"]
     );
     let name = "b".to_owned();
-    let take = Edit::ApplyVariant { name: name.clone() };
-    assert_eq!(refused(&mut study, take), EditRefusal::NoVariant { name });
+    let unknown = Edit::ApplyVariant { name: name.clone() };
+    assert_eq!(
+        refused(&mut study, unknown),
+        EditRefusal::NoVariant { name }
+    );
 }
 
 #[test]
@@ -237,7 +242,7 @@ fn a_variant_is_analysed_like_a_study_with_its_decisions() {
         &[
             setting_table::POINTS.to(40),
             setting_table::ALPHA_GAIN.to(0.01),
-            keep("soft"),
+            store("soft"),
         ],
     );
     apply(
@@ -250,9 +255,9 @@ fn a_variant_is_analysed_like_a_study_with_its_decisions() {
     let job = VariantJob {
         study: study.of_variant("soft").unwrap(),
     };
-    let mut tools = Engine::default();
-    analyze(&mut tools, &study);
-    let found = job.run(&mut tools, &Unobserved).unwrap();
+    let mut engine = Engine::default();
+    analyze(&mut engine, &study);
+    let found = job.run(&mut engine, &Unobserved).unwrap();
     assert_eq!(
         *found,
         analyze(&mut Engine::default(), &study.of_variant("soft").unwrap())
@@ -289,7 +294,7 @@ fn reasons_and_variants_are_reconciled_to_a_changed_dataset() {
         &[
             because(&other),
             because(&nominal_of_10()),
-            keep("strict"),
+            store("strict"),
             Edit::Restore(nominal_of_10()),
         ],
     );

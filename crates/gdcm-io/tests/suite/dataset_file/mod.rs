@@ -9,10 +9,12 @@ use serde_json::{Value, json};
 
 use gdcm_io::file_caution::FileCaution;
 use gdcm_io::{
-    DatasetOrigin, Example, FileError, embedded_example, load_any, load_dataset, load_dataset_bytes,
+    DatasetOrigin, Example, FileError, LoadedDataset, embedded_example, load_any, load_dataset,
+    load_dataset_bytes,
 };
 use gdcm_model::dataset::draft_fault::DraftOddity;
 use gdcm_model::dataset::limits::LARGEST_TEXT;
+use gdcm_model::dataset::{BundleKind, Dynamics, Model};
 
 mod parameters;
 mod properties;
@@ -30,14 +32,14 @@ fn small(change: impl FnOnce(&mut Value)) -> Vec<u8> {
     serde_json::to_vec(&value).unwrap()
 }
 
-fn load(bytes: &[u8]) -> Result<gdcm_io::LoadedDataset, FileError> {
+fn load(bytes: &[u8]) -> Result<LoadedDataset, FileError> {
     load_dataset_bytes(bytes, DatasetOrigin::File(PathBuf::from("test.json")))
 }
 
 /// Returns the error with which these bytes are rejected; asserts that its message is a single line
 /// and names the file.
 fn refusal(bytes: &[u8]) -> FileError {
-    let error = load(bytes).expect_err("the file is wrong and has to be refused");
+    let error = load(bytes).expect_err("the file should be refused");
     let message = error.to_string();
     assert!(
         message.starts_with("test.json: ") && message.lines().count() == 1,
@@ -85,7 +87,7 @@ fn gzip(bytes: &[u8]) -> Vec<u8> {
 }
 
 #[test]
-fn the_small_dataset_is_read_as_it_is_written() {
+fn the_small_dataset_is_read_with_its_shape_orders_and_matrices() {
     let loaded = load(SMALL.as_bytes()).unwrap();
     let dataset = &loaded.dataset;
     assert_eq!(
@@ -99,25 +101,25 @@ fn the_small_dataset_is_read_as_it_is_written() {
     let orders: Vec<Option<usize>> = dataset
         .conditions()
         .iter()
-        .flat_map(|condition| condition.bundle(gdcm_model::dataset::BundleKind::Identified))
-        .map(gdcm_model::dataset::Model::order)
+        .flat_map(|condition| condition.bundle(BundleKind::Identified))
+        .map(Model::order)
         .collect();
     assert_eq!(orders, [Some(2), None, Some(2), Some(0)]);
-    let gdcm_model::dataset::Dynamics::StateSpace(model) =
-        &dataset.conditions()[0].bundle(gdcm_model::dataset::BundleKind::Physics)[0].dynamics
+    let Dynamics::StateSpace(model) =
+        &dataset.conditions()[0].bundle(BundleKind::Physics)[0].dynamics
     else {
-        panic!("matrices are given")
+        panic!("the model should have matrices")
     };
     assert_eq!(
         (model.a()[(0, 1)], model.a()[(1, 0)]),
         (1.0, -2.0),
-        "A[row][column]"
+        "A should be read by rows"
     );
     assert_eq!(loaded.cautions, []);
 }
 
 #[test]
-fn timing_valid_bands_and_how_a_response_was_estimated_are_known_and_kept() {
+fn timing_valid_bands_averages_and_windows_survive_saving() {
     let bytes = small(|file| {
         let model = &mut file["conditions"][0]["physics_models"][1];
         model["sample_time_s"] = json!(0.01);
@@ -145,13 +147,13 @@ fn timing_valid_bands_and_how_a_response_was_estimated_are_known_and_kept() {
 }
 
 #[test]
-fn a_packed_file_is_known_by_its_bytes_and_not_by_its_name() {
+fn a_gzip_file_is_recognised_by_its_bytes_not_its_name() {
     let plain = load(SMALL.as_bytes()).unwrap();
     let packed = load(&gzip(SMALL.as_bytes())).unwrap();
     assert_eq!(plain.dataset, packed.dataset);
     assert_ne!(
         plain.sha256, packed.sha256,
-        "the hash is that of the bytes as stored"
+        "the hash should be that of the stored bytes"
     );
 }
 
@@ -169,12 +171,12 @@ fn the_embedded_example_has_eleven_conditions_and_no_cautions() {
 }
 
 #[test]
-fn a_byte_order_mark_is_passed_over() {
+fn a_byte_order_mark_is_skipped() {
     assert!(load(&[b"\xef\xbb\xbf", SMALL.as_bytes()].concat()).is_ok());
 }
 
 #[test]
-fn a_model_of_order_zero_may_leave_its_rows_out() {
+fn the_matrix_c_of_a_static_gain_may_have_empty_rows_or_none() {
     for c in [json!([]), json!([[], []])] {
         let bytes = small(|file| file["conditions"][1]["identified_models"][1]["C"] = c.clone());
         assert!(load(&bytes).is_ok(), "{c}");
@@ -182,7 +184,7 @@ fn a_model_of_order_zero_may_leave_its_rows_out() {
 }
 
 #[test]
-fn keys_that_are_not_known_are_named_with_their_places_once() {
+fn unknown_keys_are_reported_with_their_first_place_and_their_count() {
     let bytes = small(|file| {
         file["author"] = json!("someone");
         for model in file["conditions"][0]["physics_models"]
@@ -211,7 +213,7 @@ fn keys_that_are_not_known_are_named_with_their_places_once() {
 }
 
 #[test]
-fn an_order_that_the_matrices_do_not_have_is_a_caution() {
+fn a_stated_order_that_differs_from_the_matrices_is_a_caution() {
     let bytes = small(|file| file["conditions"][1]["identified_models"][0]["order"] = json!(12));
     let cautions = load(&bytes).unwrap().cautions;
     let [FileCaution::Oddity(warning)] = cautions.as_slice() else {
@@ -232,7 +234,7 @@ fn an_order_that_the_matrices_do_not_have_is_a_caution() {
 }
 
 #[test]
-fn a_file_full_of_keys_that_are_not_known_tells_the_first_of_them_and_counts_the_rest() {
+fn the_first_fifty_unknown_keys_are_listed_and_the_rest_are_counted() {
     let bytes = small(|file| {
         for index in 0..1000 {
             file[format!("key {index}")] = json!(index);
@@ -244,9 +246,9 @@ fn a_file_full_of_keys_that_are_not_known_tells_the_first_of_them_and_counts_the
 }
 
 #[test]
-fn names_of_states_are_kept_where_there_is_one_for_each() {
-    let names = |loaded: &gdcm_io::LoadedDataset, model: usize| {
-        loaded.dataset.conditions()[0].bundle(gdcm_model::dataset::BundleKind::Physics)[model]
+fn state_names_are_kept_only_if_every_state_has_one() {
+    let names = |loaded: &LoadedDataset, model: usize| {
+        loaded.dataset.conditions()[0].bundle(BundleKind::Physics)[model]
             .states
             .to_vec()
     };

@@ -1,7 +1,6 @@
 //! Named parameters of the physics model in dataset files (M18.1).
 
 use gdcm_io::files::dataset_file::save_dataset;
-use gdcm_model::dataset::BundleKind;
 use gdcm_model::dataset::limits::MOST_PARAMETERS;
 use gdcm_model::dataset::physics_parameter::MovedParameters;
 
@@ -31,7 +30,7 @@ fn with_runs(file: &mut Value) {
 }
 
 #[test]
-fn runs_are_read_beside_the_bundle() {
+fn runs_and_reruns_are_no_members_of_the_physics_bundle() {
     let before = load(SMALL.as_bytes()).unwrap().dataset;
     let loaded = load(&small(with_runs)).unwrap();
     assert!(loaded.cautions.is_empty(), "{:?}", loaded.cautions);
@@ -45,14 +44,14 @@ fn runs_are_read_beside_the_bundle() {
     assert_eq!(
         condition.bundle(BundleKind::Physics),
         before.conditions()[0].bundle(BundleKind::Physics),
-        "runs are no members of the bundle"
+        "the bundle should be the same as without runs"
     );
     let [run, rerun] = condition.moved_models() else {
-        panic!("a run and a rerun")
+        panic!("expected a run and a rerun")
     };
     assert_eq!(run.run().unwrap().delta, 5.0);
     let MovedParameters::Rerun(changes) = &rerun.moved else {
-        panic!("a rerun")
+        panic!("expected a rerun")
     };
     assert_eq!((changes[1].name.as_str(), changes[1].delta), ("lag", -0.01));
     // The role of the rerun is nominal in the file.
@@ -60,7 +59,7 @@ fn runs_are_read_beside_the_bundle() {
 }
 
 #[test]
-fn runs_are_the_same_after_saving() {
+fn runs_survive_saving() {
     let dataset = load(&small(with_runs)).unwrap().dataset;
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("saved.json.gz");
@@ -75,7 +74,7 @@ fn a_dataset_without_runs_is_saved_without_their_keys() {
     let path = folder.path().join("saved.json");
     save_dataset(&dataset, &path).unwrap();
     let text = std::fs::read_to_string(path).unwrap();
-    assert!(!text.contains("parameter"));
+    assert!(!text.contains("parameter"), "{text}");
 }
 
 #[test]
@@ -90,7 +89,7 @@ fn a_run_keeps_its_parameter_when_models_are_identified() {
 }
 
 #[test]
-fn runs_without_meaning_are_refused_with_their_place() {
+fn meaningless_runs_and_parameters_are_refused() {
     for (pointer, value, code) in [
         (
             "/conditions/0/physics_models/1/parameter/delta",
@@ -147,12 +146,13 @@ fn runs_without_meaning_are_refused_with_their_place() {
         },
         "too-many-entries",
         "parameters",
+        // The limit, MOST_PARAMETERS.
         &["200"],
     );
 }
 
 #[test]
-fn a_parameter_of_an_identified_model_is_reported() {
+fn a_parameter_of_an_identified_model_is_reported_as_misplaced() {
     let loaded = load(&small(|file| {
         file["conditions"][0]["identified_models"][0]["parameter"] =
             json!({"name": "Ixx", "delta": 5, "unit": "%"});

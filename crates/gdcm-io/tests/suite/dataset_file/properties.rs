@@ -14,14 +14,14 @@ use gdcm_model::dataset::measured_response::{Estimate, MeasuredResponse};
 use gdcm_model::dataset::model::Origin;
 use gdcm_model::dataset::state_space::Timing;
 use gdcm_model::dataset::{
-    Band, Channel, Condition, Dataset, Dynamics, Model, Pair, PairTable, StateSpace,
+    Band, Channel, Condition, ConditionId, Dataset, Dynamics, Model, Pair, PairTable, StateSpace,
 };
 
 use super::{SMALL, gzip, load};
 
 /// Reads bytes and returns whether they are a dataset; asserts that an error message is a single
 /// line.
-fn read(bytes: &[u8]) -> bool {
+fn read_or_refuse(bytes: &[u8]) -> bool {
     match load(bytes) {
         Ok(_) => true,
         Err(error) => {
@@ -45,12 +45,16 @@ fn replace_nth(value: &mut Value, nth: usize, replacement: &Value) -> usize {
         }
         *left = left.and_then(|left| left.checked_sub(1));
         match value {
-            Value::Array(entries) => entries
-                .iter_mut()
-                .for_each(|entry| visit(entry, left, seen, replacement)),
-            Value::Object(entries) => entries
-                .values_mut()
-                .for_each(|entry| visit(entry, left, seen, replacement)),
+            Value::Array(entries) => {
+                for entry in entries {
+                    visit(entry, left, seen, replacement);
+                }
+            }
+            Value::Object(entries) => {
+                for entry in entries.values_mut() {
+                    visit(entry, left, seen, replacement);
+                }
+            }
             _ => {}
         }
     }
@@ -59,7 +63,7 @@ fn replace_nth(value: &mut Value, nth: usize, replacement: &Value) -> usize {
     seen
 }
 
-fn odd_values() -> impl Strategy<Value = Value> {
+fn unexpected_values() -> impl Strategy<Value = Value> {
     prop::sample::select(vec![
         json!(null),
         json!(true),
@@ -138,6 +142,7 @@ fn measured(p: usize, m: usize) -> impl Strategy<Value = Dynamics> {
                     .unwrap();
             let response = response
                 .with_estimate(Estimate {
+                    // Averages have the same limits as windows.
                     averages: window_s,
                     window_s,
                 })
@@ -158,19 +163,19 @@ fn condition(id: i64, p: usize, m: usize) -> impl Strategy<Value = Condition> {
         0..3,
     ));
     let identified = prop_oneof![state_space(p, m).boxed(), measured(p, m).boxed()];
-    let figures = (
+    let state = (
         0.0..1e3_f64,
         prop::option::of(numbers()),
         prop::option::of("[ -~]{0,5}"),
     );
-    let identity = (prop::option::of("[a-z]{1,3}"), prop::option::of(0_usize..9));
+    let method_and_order = (prop::option::of("[a-z]{1,3}"), prop::option::of(0_usize..9));
     (
         state_space(p, m),
         state_space(p, m),
         identified,
         perturbation,
-        figures,
-        identity,
+        state,
+        method_and_order,
     )
         .prop_map(
             move |(
@@ -182,7 +187,7 @@ fn condition(id: i64, p: usize, m: usize) -> impl Strategy<Value = Condition> {
                 (method, order),
             )| {
                 let flight_state = FlightState {
-                    id: gdcm_model::dataset::ConditionId(id),
+                    id: ConditionId(id),
                     name: format!("condition \"{id}\"\n"),
                     airspeed_kt,
                     altitude,
@@ -190,14 +195,14 @@ fn condition(id: i64, p: usize, m: usize) -> impl Strategy<Value = Condition> {
                     weight: None,
                     mass_kg: Some(6600.0),
                 };
-                let still: Option<BTreeMap<String, f64>> = None;
+                let unperturbed: Option<BTreeMap<String, f64>> = None;
                 let model = |name: &str, origin, dynamics| Model::new(name, origin, dynamics);
                 let physics = vec![
                     model("a", Origin::Perturbed { perturbation }, perturbed),
                     model(
                         "b",
                         Origin::Nominal {
-                            perturbation: still,
+                            perturbation: unperturbed,
                         },
                         nominal,
                     ),
@@ -241,49 +246,61 @@ fn datasets() -> impl Strategy<Value = Dataset> {
 
 proptest! {
     #[test]
-    fn a_file_cut_off_anywhere_is_refused(cut in 0..SMALL.trim_end().len()) {
-        prop_assert!(!read(&SMALL.as_bytes()[..cut]));
+    fn a_file_truncated_anywhere_is_refused(cut in 0..SMALL.trim_end().len()) {
+        prop_assert!(!read_or_refuse(&SMALL.as_bytes()[..cut]));
     }
 
     #[test]
-    fn a_flipped_bit_never_brings_the_reader_down(flips in prop::collection::vec((0..SMALL.len(), 0_u8..8), 1..4)) {
+    fn flipped_bits_never_make_the_reader_panic(
+        flips in prop::collection::vec((0..SMALL.len(), 0_u8..8), 1..4),
+    ) {
         let mut bytes = SMALL.as_bytes().to_vec();
         for (at, bit) in flips {
             bytes[at] ^= 1 << bit;
         }
-        read(&bytes);
+        read_or_refuse(&bytes);
     }
 
     #[test]
-    fn a_flipped_bit_in_packed_data_never_changes_the_dataset(place in 0.0..1.0_f64, bit in 0_u8..8) {
+    fn a_flipped_bit_in_a_gzip_file_never_changes_the_dataset(
+        place in 0.0..1.0_f64, bit in 0_u8..8,
+    ) {
         let mut bytes = gzip(SMALL.as_bytes());
         let at = (place * bytes.len() as f64) as usize;
         bytes[at] ^= 1 << bit;
         // If the file can still be read, the dataset must be unchanged: some bits have no meaning
         // (such as the time of compression), and others select one of two equal strings to copy
         // from.
-        if read(&bytes) {
-            prop_assert_eq!(load(&bytes).unwrap().dataset, load(SMALL.as_bytes()).unwrap().dataset);
+        if read_or_refuse(&bytes) {
+            let undamaged = load(SMALL.as_bytes()).unwrap().dataset;
+            prop_assert_eq!(load(&bytes).unwrap().dataset, undamaged);
         }
     }
 
     #[test]
-    fn a_replaced_value_never_brings_the_reader_down(nth in 0_usize..400, replacement in odd_values()) {
+    fn a_replaced_value_never_makes_the_reader_panic(
+        nth in 0_usize..400, replacement in unexpected_values(),
+    ) {
         let mut value: Value = serde_json::from_str(SMALL).unwrap();
         let count = replace_nth(&mut value.clone(), usize::MAX, &Value::Null);
         replace_nth(&mut value, nth % count, &replacement);
-        read(&serde_json::to_vec(&value).unwrap());
+        read_or_refuse(&serde_json::to_vec(&value).unwrap());
     }
 
     #[test]
-    fn bytes_of_any_kind_never_bring_the_reader_down(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
-        read(&bytes);
+    fn arbitrary_bytes_never_make_the_reader_panic(
+        bytes in prop::collection::vec(any::<u8>(), 0..200),
+    ) {
+        read_or_refuse(&bytes);
     }
 
     #[test]
-    fn a_dataset_written_and_read_is_the_same(dataset in datasets(), packed in any::<bool>()) {
+    fn a_dataset_is_unchanged_after_saving_and_reading(
+        dataset in datasets(), packed in any::<bool>(),
+    ) {
         let directory = tempfile::tempdir().unwrap();
-        let path = directory.path().join(if packed { "dataset.json.gz" } else { "dataset.json" });
+        let name = if packed { "dataset.json.gz" } else { "dataset.json" };
+        let path = directory.path().join(name);
         save_dataset(&dataset, &path).unwrap();
         prop_assert_eq!(std::fs::read(&path).unwrap().starts_with(&[0x1f, 0x8b]), packed);
         let loaded = load_dataset(&path).unwrap();

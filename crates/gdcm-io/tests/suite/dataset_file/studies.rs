@@ -26,11 +26,11 @@ use gdcm_study::{Edit, Study};
 use super::{SMALL, assert_error};
 
 /// A directory with the small dataset in `data/`, and an empty `studies/` beside it.
-struct Desk {
+struct Workspace {
     directory: tempfile::TempDir,
 }
 
-impl Desk {
+impl Workspace {
     fn new() -> Self {
         let directory = tempfile::tempdir().unwrap();
         fs::create_dir(directory.path().join("data")).unwrap();
@@ -52,7 +52,7 @@ impl Desk {
     }
 
     /// Saves a study without decisions, then changes the JSON in its file.
-    fn saved(&self, change: impl FnOnce(&mut Json)) {
+    fn save_changed(&self, change: impl FnOnce(&mut Json)) {
         let loaded = self.loaded();
         save_study(&Study::new(loaded.dataset.clone()), &loaded, &self.study()).unwrap();
         let mut value: Json = serde_json::from_slice(&fs::read(self.study()).unwrap()).unwrap();
@@ -60,13 +60,14 @@ impl Desk {
         fs::write(self.study(), serde_json::to_vec(&value).unwrap()).unwrap();
     }
 
+    /// Returns the error with which a study file is rejected after `change`.
     fn refusal(&self, change: impl FnOnce(&mut Json)) -> FileError {
-        self.saved(change);
+        self.save_changed(change);
         open_study(&self.study()).unwrap_err()
     }
 }
 
-fn decided(study: &mut Study, edits: &[Edit]) {
+fn apply(study: &mut Study, edits: &[Edit]) {
     for edit in edits {
         study.apply(edit).unwrap();
     }
@@ -109,16 +110,16 @@ fn edits() -> impl Strategy<Value = Vec<Edit>> {
 
 #[test]
 fn every_setting_is_a_key_of_the_file() {
-    let desk = Desk::new();
-    let loaded = desk.loaded();
+    let workspace = Workspace::new();
+    let loaded = workspace.loaded();
     let mut study = Study::new(loaded.dataset.clone());
     for setting in SETTINGS {
         study
             .apply(&setting.to(value_of(setting, [0.6, 0.6])))
             .unwrap();
     }
-    save_study(&study, &loaded, &desk.study()).unwrap();
-    let text: Json = serde_json::from_slice(&fs::read(desk.study()).unwrap()).unwrap();
+    save_study(&study, &loaded, &workspace.study()).unwrap();
+    let text: Json = serde_json::from_slice(&fs::read(workspace.study()).unwrap()).unwrap();
     for setting in SETTINGS {
         let pointer = format!("/settings/{}", setting.key.replace('.', "/"));
         assert!(text.pointer(&pointer).is_some(), "{}", setting.key);
@@ -127,38 +128,40 @@ fn every_setting_is_a_key_of_the_file() {
 
 #[test]
 fn decisions_about_physics_parameters_are_kept_and_checked() {
-    let desk = Desk::new();
-    let loaded = desk.loaded();
+    let workspace = Workspace::new();
+    let loaded = workspace.loaded();
     let mut study = Study::new(loaded.dataset.clone());
     let parameters = &mut study.settings.physics_parameters;
     parameters.by_hand.insert("Ixx".to_owned(), -4.5);
     parameters.off.insert("lift".to_owned());
     parameters.plausible_sd.insert("Ixx".to_owned(), 7.5);
-    save_study(&study, &loaded, &desk.study()).unwrap();
-    assert_eq!(open_study(&desk.study()).unwrap().study, study);
+    save_study(&study, &loaded, &workspace.study()).unwrap();
+    assert_eq!(open_study(&workspace.study()).unwrap().study, study);
     // A file of an older program has none of these decisions.
-    let desk = Desk::new();
-    desk.saved(|text| {
+    let workspace = Workspace::new();
+    workspace.save_changed(|text| {
         assert!(text["settings"].get("physics").is_none());
         assert!(text["settings"].get("physics_parameters").is_none());
     });
-    let opened = open_study(&desk.study()).unwrap().study;
+    let opened = open_study(&workspace.study()).unwrap().study;
     assert_eq!(opened.settings.physics_parameters, Default::default());
     for (key, value) in [
         ("plausible_sd", serde_json::json!({"Ixx": 0.0})),
         ("points", serde_json::json!(1)),
         ("gain_sd", serde_json::json!(-1.0)),
     ] {
-        desk.saved(|text| text["settings"]["physics_parameters"] = serde_json::json!({key: value}));
-        assert!(open_study(&desk.study()).is_err(), "{key}");
+        workspace.save_changed(|text| {
+            text["settings"]["physics_parameters"] = serde_json::json!({key: value})
+        });
+        assert!(open_study(&workspace.study()).is_err(), "{key}");
     }
 }
 
 /// Returns the delay scheduling of a study opened from a file after `change`.
 fn delay_scheduling(change: impl FnOnce(&mut Json)) -> DelayScheduling {
-    let desk = Desk::new();
-    desk.saved(change);
-    open_study(&desk.study())
+    let workspace = Workspace::new();
+    workspace.save_changed(change);
+    open_study(&workspace.study())
         .unwrap()
         .study
         .settings
@@ -166,7 +169,7 @@ fn delay_scheduling(change: impl FnOnce(&mut Json)) -> DelayScheduling {
 }
 
 #[test]
-fn flags_of_older_studies_say_whether_delays_are_scheduled() {
+fn flags_of_older_studies_set_the_delay_scheduling() {
     let older = |flag: bool| {
         delay_scheduling(|file| {
             file["settings"]
@@ -180,7 +183,8 @@ fn flags_of_older_studies_say_whether_delays_are_scheduled() {
         [older(true), older(false)],
         [DelayScheduling::Always, DelayScheduling::Never]
     );
-    let said = |value: Json| delay_scheduling(|file| file["settings"]["schedule_delays"] = value);
+    let read_as =
+        |value: Json| delay_scheduling(|file| file["settings"]["schedule_delays"] = value);
     let values = [
         json!("automatic"),
         json!("always"),
@@ -189,7 +193,7 @@ fn flags_of_older_studies_say_whether_delays_are_scheduled() {
         json!(false),
     ];
     assert_eq!(
-        values.map(said),
+        values.map(read_as),
         [
             DelayScheduling::Automatic,
             DelayScheduling::Always,
@@ -199,7 +203,7 @@ fn flags_of_older_studies_say_whether_delays_are_scheduled() {
         ]
     );
     let refusal =
-        Desk::new().refusal(|file| file["settings"]["schedule_delays"] = json!("sometimes"));
+        Workspace::new().refusal(|file| file["settings"]["schedule_delays"] = json!("sometimes"));
     assert_error(
         &refusal,
         "unknown-word",
@@ -209,17 +213,17 @@ fn flags_of_older_studies_say_whether_delays_are_scheduled() {
 }
 
 #[test]
-fn older_programs_find_a_flag_where_they_look_for_it() {
-    let desk = Desk::new();
-    let loaded = desk.loaded();
+fn the_flag_that_older_programs_read_is_written_too() {
+    let workspace = Workspace::new();
+    let loaded = workspace.loaded();
     for (scheduling, flag) in [("automatic", false), ("always", true), ("never", false)] {
         let mut study = Study::new(loaded.dataset.clone());
         let value = setting_table::SCHEDULE_DELAYS.read(&[scheduling]).unwrap();
         study
             .apply(&setting_table::SCHEDULE_DELAYS.to(value))
             .unwrap();
-        save_study(&study, &loaded, &desk.study()).unwrap();
-        let text: Json = serde_json::from_slice(&fs::read(desk.study()).unwrap()).unwrap();
+        save_study(&study, &loaded, &workspace.study()).unwrap();
+        let text: Json = serde_json::from_slice(&fs::read(workspace.study()).unwrap()).unwrap();
         let settings = &text["settings"];
         assert_eq!(
             (
@@ -234,16 +238,21 @@ fn older_programs_find_a_flag_where_they_look_for_it() {
 proptest! {
     #[test]
     fn a_study_saved_and_opened_is_the_same_to_the_last_digit(
-        edits in edits(), others in edits(), rejected in 0_usize..2, [scheduled, held_out] in any::<[bool; 2]>(),
+        edits in edits(),
+        others in edits(),
+        rejected in 0_usize..2,
+        [scheduled, held_out] in any::<[bool; 2]>(),
         reason in "[ -~α→\n]{0,40}",
     ) {
-        let desk = Desk::new();
-        let loaded = desk.loaded();
+        let workspace = Workspace::new();
+        let loaded = workspace.loaded();
         let mut study = Study::new(loaded.dataset.clone());
-        decided(&mut study, &edits);
+        apply(&mut study, &edits);
         let first = loaded.dataset.conditions()[0].clone();
-        let id = |bundle, model: usize| ModelId::new(first.id(), bundle, &first.bundle(bundle)[model].name);
-        decided(&mut study, &[
+        let id = |bundle, model: usize| {
+            ModelId::new(first.id(), bundle, &first.bundle(bundle)[model].name)
+        };
+        apply(&mut study, &[
             Edit::RejectBecause { model: id(BundleKind::Physics, rejected), reason },
             Edit::Pin(id(BundleKind::Identified, rejected)),
             Edit::SetScheduled { condition: loaded.dataset.conditions()[1].id(), scheduled },
@@ -251,10 +260,13 @@ proptest! {
             Edit::SetSign { channel: Channel::Output(1), role: Some(SignRole::Identified) },
             Edit::StoreVariant { name: "first → α".to_owned() },
         ]);
-        decided(&mut study, &others);
-        decided(&mut study, &[Edit::Restore(id(BundleKind::Physics, rejected)), Edit::StoreVariant { name: "second".to_owned() }]);
-        save_study(&study, &loaded, &desk.study()).unwrap();
-        let opened = open_study(&desk.study()).unwrap();
+        apply(&mut study, &others);
+        apply(&mut study, &[
+            Edit::Restore(id(BundleKind::Physics, rejected)),
+            Edit::StoreVariant { name: "second".to_owned() },
+        ]);
+        save_study(&study, &loaded, &workspace.study()).unwrap();
+        let opened = open_study(&workspace.study()).unwrap();
         prop_assert_eq!(opened.study, study);
         prop_assert_eq!(opened.loaded.sha256, loaded.sha256);
         prop_assert_eq!(opened.differences, []);
@@ -262,37 +274,37 @@ proptest! {
 }
 
 #[test]
-fn a_study_of_an_older_program_has_neither_reasons_nor_variants_nor_a_tolerance_nor_coherence() {
-    let desk = Desk::new();
-    desk.saved(|text| {
+fn a_study_without_newer_keys_opens_with_the_behaviour_of_older_programs() {
+    let workspace = Workspace::new();
+    workspace.save_changed(|text| {
         assert!(
             text.get("variants").is_none()
                 && text["conditions"][0]["physics"].get("reasons").is_none()
         );
         let settings = text["settings"].as_object_mut().unwrap();
-        ["agreement_db", "coherence_threshold"]
-            .iter()
-            .for_each(|key| drop(settings.remove(*key).unwrap()));
+        for key in ["agreement_db", "coherence_threshold"] {
+            settings.remove(key).unwrap();
+        }
     });
-    let opened = open_study(&desk.study()).unwrap();
+    let opened = open_study(&workspace.study()).unwrap();
     let mut expected = Study::new(opened.loaded.dataset.clone());
     assert_eq!(
         expected.settings.coherence_threshold,
         Some(0.6),
-        "one response is measured with coherence"
+        "a response of the dataset has coherence, so new studies use it"
     );
-    decided(&mut expected, &[setting_table::COHERENCE.to(None::<f64>)]);
+    apply(&mut expected, &[setting_table::COHERENCE.to(None::<f64>)]);
     assert_eq!(
         opened.study, expected,
-        "an older program took no notice of coherence"
+        "older programs ignored coherence, so the study should too"
     );
     assert_eq!(opened.study.settings.agreement_db, 0.05);
 }
 
 #[test]
 fn a_wrong_variant_is_refused_with_its_name() {
-    let desk = Desk::new();
-    let error = desk.refusal(|text| {
+    let workspace = Workspace::new();
+    let error = workspace.refusal(|text| {
         let settings = text["settings"].clone();
         let conditions = text["conditions"].clone();
         text["variants"] =
@@ -309,13 +321,13 @@ fn a_wrong_variant_is_refused_with_its_name() {
 
 #[test]
 fn a_study_names_its_dataset_relative_to_itself_and_moves_with_it() {
-    let desk = Desk::new();
-    desk.saved(|_| {});
-    let text: Json = serde_json::from_slice(&fs::read(desk.study()).unwrap()).unwrap();
+    let workspace = Workspace::new();
+    workspace.save_changed(|_| {});
+    let text: Json = serde_json::from_slice(&fs::read(workspace.study()).unwrap()).unwrap();
     assert_eq!(text["dataset"]["path"], json!("../data/small.json"));
     let moved = tempfile::tempdir().unwrap();
     let root = moved.path().join("elsewhere");
-    fs::rename(desk.directory.path(), &root).unwrap();
+    fs::rename(workspace.directory.path(), &root).unwrap();
     assert!(open_study(&root.join("studies/a.gdcm-study.json")).is_ok());
 }
 
@@ -325,7 +337,7 @@ fn a_study_of_the_embedded_example_has_no_path() {
     let path = directory.path().join("example.gdcm-study.json");
     let loaded = embedded_example().unwrap();
     let mut study = Study::new(loaded.dataset.clone());
-    decided(&mut study, &[setting_table::ALPHA_GAIN.to(0.1 + 0.2)]);
+    apply(&mut study, &[setting_table::ALPHA_GAIN.to(0.1 + 0.2)]);
     save_study(&study, &loaded, &path).unwrap();
     let text: Json = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
     assert_eq!(
@@ -333,7 +345,7 @@ fn a_study_of_the_embedded_example_has_no_path() {
         (&Json::Null, &json!("embedded example"))
     );
     let Opened::Study(opened) = load_any(&path, &Default::default()).unwrap() else {
-        panic!("a study was saved")
+        panic!("the file should open as a study")
     };
     assert_eq!(opened.study, study);
 }
@@ -354,15 +366,15 @@ fn a_study_of_the_real_aircraft_opens_that_example_again() {
 }
 
 #[test]
-fn a_study_whose_dataset_is_gone_says_which() {
-    let desk = Desk::new();
-    desk.saved(|_| {});
-    fs::remove_file(desk.dataset()).unwrap();
-    let error = open_study(&desk.study()).unwrap_err();
+fn a_study_whose_dataset_is_missing_names_the_file() {
+    let workspace = Workspace::new();
+    workspace.save_changed(|_| {});
+    fs::remove_file(workspace.dataset()).unwrap();
+    let error = open_study(&workspace.study()).unwrap_err();
     let FileError::StudyDataset { path, dataset } = error else {
         panic!("{error}")
     };
-    assert_eq!(path, desk.study());
+    assert_eq!(path, workspace.study());
     assert!(
         matches!(&*dataset, FileError::Missing { path } if path.ends_with("small.json")),
         "{dataset}"
@@ -370,14 +382,14 @@ fn a_study_whose_dataset_is_gone_says_which() {
 }
 
 /// Returns the differences of the dataset that are reported when the study is opened.
-fn differences(desk: &Desk) -> Vec<Difference> {
-    open_study(&desk.study()).unwrap().differences
+fn differences(workspace: &Workspace) -> Vec<Difference> {
+    open_study(&workspace.study()).unwrap().differences
 }
 
 #[test]
-fn a_study_whose_dataset_has_changed_opens_and_lists_what_is_different() {
-    let desk = Desk::new();
-    let loaded = desk.loaded();
+fn a_study_whose_dataset_has_changed_opens_and_lists_the_differences() {
+    let workspace = Workspace::new();
+    let loaded = workspace.loaded();
     let mut study = Study::new(loaded.dataset.clone());
     let model = |id, kind, name: &str| ModelId::new(ConditionId(id), kind, name);
     decided(
@@ -388,16 +400,16 @@ fn a_study_whose_dataset_has_changed_opens_and_lists_what_is_different() {
             Edit::Pin(model(7, BundleKind::Identified, "measured")),
         ],
     );
-    save_study(&study, &loaded, &desk.study()).unwrap();
+    save_study(&study, &loaded, &workspace.study()).unwrap();
     let mut value: Json = serde_json::from_str(SMALL).unwrap();
     let first = &mut value["conditions"][0];
     first["airspeed_kt"] = json!(61);
     let models = first["physics_models"].as_array_mut().unwrap();
     models[0]["A"][0][0] = json!(-0.25);
     models[1]["name"] = json!("V+6kt");
-    fs::write(desk.dataset(), serde_json::to_vec(&value).unwrap()).unwrap();
+    fs::write(workspace.dataset(), serde_json::to_vec(&value).unwrap()).unwrap();
 
-    let found = differences(&desk);
+    let found = differences(&workspace);
     let physics = |name: &str| model(7, BundleKind::Physics, name);
     for difference in [
         Difference::AirspeedChanged {
@@ -422,67 +434,67 @@ fn a_study_whose_dataset_has_changed_opens_and_lists_what_is_different() {
         "{found:?}"
     );
     assert_eq!(found.len(), 5, "{found:?}");
-    let opened = open_study(&desk.study()).unwrap().study;
+    let opened = open_study(&workspace.study()).unwrap().study;
     assert_eq!(
         opened.settings.alpha_gain, 0.5,
-        "what still applies is kept"
+        "decisions that still apply should be kept"
     );
     let pinned = &opened.choice(ConditionId(7)).identified.pinned;
     assert_eq!(pinned.as_deref(), Some("measured"));
 }
 
 #[test]
-fn a_dataset_written_in_another_way_is_not_different() {
-    let desk = Desk::new();
-    desk.saved(|_| {});
+fn a_reformatted_dataset_has_no_differences() {
+    let workspace = Workspace::new();
+    workspace.save_changed(|_| {});
     let value: Json = serde_json::from_str(SMALL).unwrap();
     fs::write(
-        desk.dataset(),
+        workspace.dataset(),
         serde_json::to_string_pretty(&value).unwrap(),
     )
     .unwrap();
-    assert_eq!(differences(&desk), []);
+    assert_eq!(differences(&workspace), []);
 }
 
 #[test]
-fn a_study_that_does_not_say_what_its_dataset_held_says_that_it_has_changed() {
-    let desk = Desk::new();
-    desk.saved(|file| drop(file["dataset"].as_object_mut().unwrap().remove("holds")));
-    assert_eq!(differences(&desk), [], "the same file");
-    fs::write(desk.dataset(), SMALL.replace("6600", "6601")).unwrap();
-    let found = differences(&desk);
+fn a_study_without_an_inventory_reports_a_changed_dataset_as_another_file() {
+    let workspace = Workspace::new();
+    workspace.save_changed(|file| drop(file["dataset"].as_object_mut().unwrap().remove("holds")));
+    assert_eq!(differences(&workspace), [], "the file is unchanged");
+    fs::write(workspace.dataset(), SMALL.replace("6600", "6601")).unwrap();
+    let found = differences(&workspace);
     assert!(
         matches!(
             found.as_slice(),
-            [Difference::AnotherFile { found, .. }] if *found == desk.loaded().sha256
+            [Difference::AnotherFile { found, .. }] if *found == workspace.loaded().sha256
         ),
         "{found:?}"
     );
 }
 
 #[test]
-fn a_dataset_that_has_moved_is_found_beside_the_study_or_where_it_is_said_to_be() {
-    let desk = Desk::new();
-    desk.saved(|_| {});
-    let elsewhere = desk.directory.path().join("elsewhere.json");
-    fs::rename(desk.dataset(), &elsewhere).unwrap();
+fn a_moved_dataset_is_found_beside_the_study_or_at_the_given_path() {
+    let workspace = Workspace::new();
+    workspace.save_changed(|_| {});
+    let elsewhere = workspace.directory.path().join("elsewhere.json");
+    fs::rename(workspace.dataset(), &elsewhere).unwrap();
     assert!(matches!(
-        open_study(&desk.study()),
+        open_study(&workspace.study()),
         Err(FileError::StudyDataset { .. })
     ));
     assert_eq!(
-        open_study_of(&desk.study(), &elsewhere, &Default::default())
+        open_study_of(&workspace.study(), &elsewhere, &Default::default())
             .unwrap()
             .differences,
         []
     );
-    fs::rename(&elsewhere, desk.study().with_file_name("small.json")).unwrap();
-    assert_eq!(open_study(&desk.study()).unwrap().differences, []);
+    fs::rename(&elsewhere, workspace.study().with_file_name("small.json")).unwrap();
+    assert_eq!(open_study(&workspace.study()).unwrap().differences, []);
 }
 
 #[test]
-fn a_study_that_holds_what_cannot_be_decided_is_refused_with_the_place() {
-    let desk = Desk::new();
+fn a_study_with_invalid_decisions_is_refused_with_the_place() {
+    let workspace = Workspace::new();
     type Change = fn(&mut Json);
     let cases: [(Change, &str, &str, &str); 8] = [
         (
@@ -535,17 +547,17 @@ fn a_study_that_holds_what_cannot_be_decided_is_refused_with_the_place() {
         ),
     ];
     for (change, code, place, value) in cases {
-        let error = desk.refusal(change);
+        let error = workspace.refusal(change);
         assert_error(&error, code, place, &[value, "a.gdcm-study.json: "]);
         assert_eq!(error.to_string().lines().count(), 1);
     }
 }
 
 #[test]
-fn a_study_beside_its_dataset_names_it_plainly() {
-    let desk = Desk::new();
-    let loaded = desk.loaded();
-    let beside = desk.dataset().with_file_name("b.gdcm-study.json");
+fn a_study_beside_its_dataset_stores_only_the_file_name() {
+    let workspace = Workspace::new();
+    let loaded = workspace.loaded();
+    let beside = workspace.dataset().with_file_name("b.gdcm-study.json");
     save_study(&Study::new(loaded.dataset.clone()), &loaded, &beside).unwrap();
     let text: Json = serde_json::from_slice(&fs::read(&beside).unwrap()).unwrap();
     assert_eq!(text["dataset"]["path"], json!("small.json"));
@@ -556,9 +568,15 @@ fn a_study_beside_its_dataset_names_it_plainly() {
 }
 
 #[test]
-fn a_model_keeps_the_file_it_was_made_from_through_saving_and_into_the_corrections() {
+fn the_source_of_a_model_survives_saving_and_appears_in_the_corrections() {
     let mut value: Json = serde_json::from_str(SMALL).unwrap();
-    let source = json!({"file": "models/roll+5.mat", "sha256": "ab12", "variable": "sys", "made": "2026-03-01", "note": "trim 3"});
+    let source = json!({
+        "file": "models/roll+5.mat",
+        "sha256": "ab12",
+        "variable": "sys",
+        "made": "2026-03-01",
+        "note": "trim 3",
+    });
     value["conditions"][0]["physics_models"][1]["source"] = source.clone();
     let loaded = super::load(&serde_json::to_vec(&value).unwrap()).unwrap();
     let directory = tempfile::tempdir().unwrap();

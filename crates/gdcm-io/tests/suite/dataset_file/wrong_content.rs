@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn a_key_that_is_missing_is_named_with_its_place() {
+fn a_missing_key_or_matrix_is_named_with_its_place() {
     let remove = |file: &mut Value, pointer: &str, key: &str| {
         file.pointer_mut(pointer)
             .unwrap()
@@ -70,7 +70,8 @@ fn text_where_a_number_belongs_is_named_by_matrix_row_and_column() {
     assert_refused(
         |file| file["conditions"][1]["physics_models"][0]["B"][1][0] = json!("0.2"),
         "wrong-type",
-        "condition 10 (number 2 in the file), physics model \"nominal\" (number 1), matrix B, row 2, column 1",
+        "condition 10 (number 2 in the file), physics model \"nominal\" (number 1), \
+         matrix B, row 2, column 1",
         &["\"0.2\""],
     );
     assert_refused(
@@ -100,7 +101,7 @@ fn text_where_a_number_belongs_is_named_by_matrix_row_and_column() {
 }
 
 #[test]
-fn a_number_that_is_not_finite_is_named_with_its_place_and_as_it_stands() {
+fn a_non_finite_number_is_quoted_as_written_with_its_place() {
     for written in [
         "NaN",
         "nan",
@@ -128,7 +129,7 @@ fn a_number_that_is_not_finite_is_named_with_its_place_and_as_it_stands() {
 }
 
 #[test]
-fn ragged_and_mis_shaped_matrices_are_named() {
+fn ragged_and_wrongly_shaped_matrices_are_refused() {
     let model = "condition 7 (number 1 in the file), physics model \"V+5kt\" (number 2)";
     for (matrix, value, code, values) in [
         (
@@ -232,16 +233,15 @@ fn empty_lists_are_refused() {
 }
 
 #[test]
-fn a_condition_without_identified_models_is_no_fault() {
-    let mut file: Value =
-        serde_json::from_str(include_str!("../../../../../tests/data/small-dataset.json")).unwrap();
+fn a_condition_without_identified_models_is_accepted() {
+    let mut file: Value = serde_json::from_str(SMALL).unwrap();
     file["conditions"][0]["identified_models"] = json!([]);
     file["conditions"][1]
         .as_object_mut()
         .unwrap()
         .remove("identified_models");
-    let origin = gdcm_io::DatasetOrigin::File("small.json".into());
-    let loaded = gdcm_io::load_dataset_bytes(file.to_string().as_bytes(), origin).unwrap();
+    let origin = DatasetOrigin::File("small.json".into());
+    let loaded = load_dataset_bytes(file.to_string().as_bytes(), origin).unwrap();
     assert_eq!(
         loaded.dataset.without_reference(),
         loaded.dataset.ids().collect::<Vec<_>>()
@@ -250,19 +250,19 @@ fn a_condition_without_identified_models_is_no_fault() {
 }
 
 #[test]
-fn ids_and_names_that_stand_twice_are_refused() {
+fn duplicate_ids_names_and_keys_are_refused() {
     assert_refused(
         |file| file["conditions"][1]["id"] = json!(7),
         "duplicate-condition",
         "",
         &["7", "positions 1 and 2"],
     );
-    let two_of_a_name = |file: &mut Value| {
+    let duplicate_input = |file: &mut Value| {
         file["inputs"][1]["name"] = json!("LON");
         file["on_axis"] = json!([]);
     };
     assert_refused(
-        two_of_a_name,
+        duplicate_input,
         "duplicate-channel",
         "",
         &["inputs", "\"LON\""],
@@ -283,7 +283,7 @@ fn ids_and_names_that_stand_twice_are_refused() {
 }
 
 #[test]
-fn on_axis_pairs_are_known_channels_once_and_output_first() {
+fn on_axis_pairs_must_be_distinct_known_and_output_first() {
     for (pairs, code, place, value) in [
         (
             json!([["P", "LAT"], ["P", "PED"]]),
@@ -321,7 +321,7 @@ fn on_axis_pairs_are_known_channels_once_and_output_first() {
 }
 
 #[test]
-fn a_band_is_positive_rising_and_in_radians_per_second() {
+fn a_band_must_be_positive_rising_and_in_radians_per_second() {
     for (min, max) in [(12.0, 0.5), (0.0, 12.0), (-1.0, 12.0), (2.0, 2.0)] {
         let band = json!({"min": min, "max": max, "unit": "rad/s"});
         assert_refused(
@@ -340,7 +340,7 @@ fn a_band_is_positive_rising_and_in_radians_per_second() {
 }
 
 #[test]
-fn a_model_has_matrices_or_a_frequency_response() {
+fn a_model_must_have_either_matrices_or_a_frequency_response() {
     let response =
         |file: &Value| file["conditions"][0]["identified_models"][1]["frequency_response"].clone();
     let both = |file: &mut Value| {
@@ -372,7 +372,7 @@ fn a_model_has_matrices_or_a_frequency_response() {
 }
 
 #[test]
-fn frequency_data_have_the_shape_of_the_channels_and_rising_frequencies() {
+fn frequency_data_must_have_the_shape_of_the_channels_and_rising_frequencies() {
     let place = "condition 7 (number 1 in the file), identified model \"measured\" (number 2)";
     for (key, value, code, values) in [
         (
@@ -426,7 +426,7 @@ fn frequency_data_have_the_shape_of_the_channels_and_rising_frequencies() {
 }
 
 #[test]
-fn figures_of_the_flight_state_are_possible_ones() {
+fn a_negative_airspeed_is_refused() {
     assert_refused(
         |file| file["conditions"][0]["airspeed_kt"] = json!(-5),
         "flight-state",
@@ -436,7 +436,7 @@ fn figures_of_the_flight_state_are_possible_ones() {
 }
 
 #[test]
-fn lists_too_long_to_work_with_are_refused() {
+fn more_than_32_inputs_are_refused() {
     let channels = |file: &mut Value| {
         file["inputs"] = (0..33)
             .map(|index| json!({"name": index.to_string(), "unit": ""}))
@@ -446,20 +446,20 @@ fn lists_too_long_to_work_with_are_refused() {
 }
 
 #[test]
-fn a_message_stays_on_one_line_whatever_the_names_in_the_file() {
-    let nasty = format!("a\nb\u{1b}[2J{}", "long ".repeat(1000));
+fn a_message_stays_short_and_on_one_line_despite_the_names_in_the_file() {
+    let long_name = format!("a\nb\u{1b}[2J{}", "long ".repeat(1000));
     let duplicate = |file: &mut Value| {
         for model in file["conditions"][0]["identified_models"]
             .as_array_mut()
             .unwrap()
         {
-            model["name"] = json!(nasty);
+            model["name"] = json!(long_name);
         }
     };
     assert_refused(duplicate, "duplicate-name", "", &["a\\nb"]);
     let wrong = |file: &mut Value| {
-        file["conditions"][0]["physics_models"][0]["name"] = json!(nasty);
-        file["conditions"][0]["physics_models"][0]["A"][0][0] = json!(nasty);
+        file["conditions"][0]["physics_models"][0]["name"] = json!(long_name);
+        file["conditions"][0]["physics_models"][0]["A"][0][0] = json!(long_name);
     };
     let error = refusal(&small(wrong));
     assert_error(&error, "wrong-type", "matrix A, row 1, column 1", &[]);
@@ -469,7 +469,7 @@ fn a_message_stays_on_one_line_whatever_the_names_in_the_file() {
 }
 
 #[test]
-fn a_sample_time_and_delays_that_cannot_be_are_named() {
+fn impossible_sample_times_and_delays_are_refused() {
     let model = "condition 7 (number 1 in the file), physics model \"V+5kt\" (number 2)";
     for (key, value, code, found) in [
         ("sample_time_s", json!(0), "sample-time", "found 0"),
@@ -512,7 +512,7 @@ fn a_sample_time_and_delays_that_cannot_be_are_named() {
 }
 
 #[test]
-fn a_valid_band_that_cannot_be_is_named() {
+fn impossible_valid_bands_are_refused() {
     let measured = "/conditions/0/identified_models/1/frequency_response";
     let bands = |band: Value| json!([[[0.5, 9], [0.5, 9]], [[0.5, 9], band]]);
     for (value, code, values) in [
@@ -542,7 +542,7 @@ fn a_valid_band_that_cannot_be_is_named() {
 }
 
 #[test]
-fn averages_and_windows_have_the_limits_that_the_options_have() {
+fn averages_and_windows_outside_their_limits_are_refused() {
     for (key, least, greatest) in [("averages", 1e-6, 1e6), ("window_s", 1e-6, 1e6)] {
         for value in [-1.0, 0.0, 0.9 * least, 1.1 * greatest, 1e300] {
             assert_refused(
@@ -564,14 +564,14 @@ fn averages_and_windows_have_the_limits_that_the_options_have() {
 }
 
 #[test]
-fn the_schema_says_the_limits_of_averages_and_windows() {
+fn the_schema_has_the_limits_of_averages_and_windows() {
     use gdcm_model::dataset::limits::{AVERAGES, WINDOW_S};
     let path = crate::program_folder().join("assets/gdcm-dataset.schema.json");
     let schema: Value = serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap();
     for (key, range) in [("averages", AVERAGES), ("window_s", WINDOW_S)] {
-        let said = &schema["$defs"]["response"]["properties"][key];
+        let property = &schema["$defs"]["response"]["properties"][key];
         assert_eq!(
-            [&said["minimum"], &said["maximum"]].map(|limit| limit.as_f64().unwrap()),
+            [&property["minimum"], &property["maximum"]].map(|limit| limit.as_f64().unwrap()),
             range,
             "{key}"
         );

@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn a_file_that_is_not_there_is_named() {
+fn a_missing_file_is_named() {
     let error = load_dataset(Path::new("no/such/file.json")).unwrap_err();
     assert!(
         matches!(&error, FileError::Missing { path } if path == Path::new("no/such/file.json")),
@@ -13,7 +13,7 @@ fn a_file_that_is_not_there_is_named() {
 }
 
 #[test]
-fn a_directory_is_refused_as_one() {
+fn a_directory_is_refused_as_a_directory() {
     let directory = tempfile::tempdir().unwrap();
     let error = load_dataset(directory.path()).unwrap_err();
     assert!(
@@ -24,7 +24,7 @@ fn a_directory_is_refused_as_one() {
 
 #[cfg(unix)]
 #[test]
-fn a_file_that_may_not_be_read_is_refused() {
+fn an_unreadable_file_is_refused() {
     // A link to itself cannot be read by any user, not even by the superuser.
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("loop.json");
@@ -61,7 +61,7 @@ fn text_that_is_not_json_is_refused_with_its_line() {
 }
 
 #[test]
-fn a_file_that_is_cut_off_says_where() {
+fn a_truncated_file_is_refused_with_the_place_of_the_cut() {
     let cut = SMALL.find("\"V+5kt\"").unwrap() + 120;
     let place = "condition 7 (number 1 in the file), physics model \"V+5kt\" (number 2)";
     assert_error(
@@ -127,8 +127,8 @@ fn deep_nesting_is_refused_where_it_starts() {
         &[],
     );
     assert_eq!(refusal_code(deep.as_bytes()), "wrong-type");
-    // The value of an unknown key is skipped without recursion, so the only error is the missing
-    // end.
+    // The value of an unknown key is skipped without recursion, so the only error is that the
+    // brackets are not closed.
     let skipped = SMALL.replacen("\"version\": 1", &format!("\"x\": {deep}"), 1);
     assert!(matches!(
         refusal(skipped.as_bytes()),
@@ -137,7 +137,7 @@ fn deep_nesting_is_refused_where_it_starts() {
 }
 
 #[test]
-fn another_format_or_version_is_told_before_anything_else() {
+fn another_format_or_version_is_reported_before_other_errors() {
     assert_refused(
         |file| file["format"] = json!("other"),
         "other-format",
@@ -170,7 +170,7 @@ fn another_format_or_version_is_told_before_anything_else() {
 }
 
 #[test]
-fn neither_a_dataset_nor_a_study_is_refused_as_such() {
+fn a_file_that_is_neither_dataset_nor_study_is_refused_with_both_formats() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("file.json");
     std::fs::write(&path, r#"{"format": "gdcm-corrections", "version": 1}"#).unwrap();

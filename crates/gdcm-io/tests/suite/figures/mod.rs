@@ -57,13 +57,16 @@ static EXAMPLE: LazyLock<Example> = LazyLock::new(|| {
             .requirements(&analysis, &IdentifiedPoles::default(), &Unobserved)
             .unwrap(),
     );
-    let couplings =
-        engine.assess_couplings(&study, CouplingCorrection::MixingAndFeedback, &Unobserved);
-    let couplings = couplings.unwrap().unwrap().unwrap();
+    let couplings = engine
+        .assess_couplings(&study, CouplingCorrection::MixingAndFeedback, &Unobserved)
+        .unwrap()
+        .unwrap()
+        .unwrap();
     let physics = engine
         .assess_physics(&study, PhysicsCorrection::Named, &Unobserved)
+        .unwrap()
+        .unwrap()
         .unwrap();
-    let physics = physics.unwrap().unwrap();
     Example {
         analysis,
         curves,

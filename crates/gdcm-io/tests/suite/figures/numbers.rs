@@ -26,7 +26,7 @@ fn csv_rows(figure: &Figure) -> Vec<CsvRow> {
 }
 
 #[test]
-fn net_gains_are_those_of_the_analysis() {
+fn exported_net_gains_equal_those_of_the_analysis() {
     let example = &*EXAMPLE;
     let pair = example.pair("Q", "LON");
     let rows = csv_rows(&example.figure(FigureKind::NetGain, vec![pair]));
@@ -47,7 +47,10 @@ fn net_gains_are_those_of_the_analysis() {
         assert_eq!(row.y, Some(expected));
         compared += 1;
     }
-    assert_eq!(compared, 11);
+    assert_eq!(
+        compared, 11,
+        "every condition of the example should have a net gain"
+    );
     let schedule = example.analysis.schedule.as_ref().unwrap();
     for row in rows.iter().filter(|row| row.curve == "schedule") {
         let airspeed_kt: f64 = row.x.parse().unwrap();
@@ -56,33 +59,33 @@ fn net_gains_are_those_of_the_analysis() {
 }
 
 #[test]
-fn changes_of_cost_are_those_of_the_analysis() {
+fn exported_changes_of_cost_equal_those_of_the_analysis() {
     let example = &*EXAMPLE;
     let pair = example.pair("R", "PED");
     let rows = csv_rows(&example.figure(FigureKind::Assessment, vec![pair]));
     assert_eq!(
         rows.len(),
         3 * 10,
-        "three parts of every condition but the one left out"
+        "expected three parts for each of the ten assessed conditions"
     );
     for row in &rows {
         assert_eq!(row.x_quantity, "Condition");
         let Ok(changes) = &example.analysis.assessment[&ConditionId(row.x.parse().unwrap())] else {
-            panic!("condition {} was assessed", row.x);
+            panic!("condition {} should be assessed", row.x);
         };
         let change = changes[pair].unwrap();
         let expected = match row.curve.as_str() {
             "ΔJ" => change.total(),
             "ΔJ magnitude" => change.magnitude(),
             "ΔJ phase" => change.phase(),
-            other => panic!("{other}"),
+            other => panic!("unexpected curve {other}"),
         };
         assert_eq!(row.y, Some(expected));
     }
 }
 
 #[test]
-fn responses_are_those_of_the_models() {
+fn exported_magnitudes_equal_those_of_the_models() {
     let example = &*EXAMPLE;
     let pair = example.pair("Q", "LON");
     let tables = example.figure(FigureKind::Bode, vec![pair]).tables();
@@ -108,8 +111,8 @@ fn responses_are_those_of_the_models() {
     }
     // Columns: the frequency, every model of both bundles, the corrected model and the scheduled
     // one.
-    let both = models.len() + example.curves.identified.len();
-    assert_eq!(tables[0].columns.len(), 1 + both + 2);
+    let models_of_both_bundles = models.len() + example.curves.identified.len();
+    assert_eq!(tables[0].columns.len(), 1 + models_of_both_bundles + 2);
     assert!(
         tables[0]
             .columns
@@ -119,18 +122,19 @@ fn responses_are_those_of_the_models() {
 }
 
 #[test]
-fn several_panels_are_one_table_with_their_names_in_each_row() {
+fn a_csv_file_of_several_panels_names_the_panel_in_each_row() {
     let example = &*EXAMPLE;
     let figure = example.figure(FigureKind::Assessment, example.on_axis());
     let rows = csv_rows(&figure);
     let panels: std::collections::BTreeSet<&str> =
         rows.iter().map(|row| row.panel.as_str()).collect();
+    // Five on-axis responses, three parts of the cost, ten assessed conditions.
     assert_eq!((rows.len(), panels.len()), (5 * 3 * 10, 5), "{panels:?}");
     assert!(panels.contains("LAT → P, ΔJ [-]"), "{panels:?}");
     assert!(
         rows.iter()
             .all(|row| row.figure == figure.title && row.y_quantity == "ΔJ [-]")
     );
-    // In tables for people, each panel has a table of its own.
+    // Tables for display are separate for each panel.
     assert_eq!(figure.tables().len(), 5);
 }

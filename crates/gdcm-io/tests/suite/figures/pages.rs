@@ -30,10 +30,11 @@ fn points(path: &str) -> Vec<[f64; 2]> {
 }
 
 #[test]
-fn a_curve_of_an_svg_leads_from_corner_to_corner() {
+fn a_diagonal_curve_in_an_svg_file_runs_from_corner_to_corner_of_the_frame() {
     let text = svg(&diagonal());
     let document = Document::parse(&text).unwrap();
     let [left, top, width, height] = frame(&document);
+    // The colour of the curve, `Hue::Nominal`.
     let curve = document
         .descendants()
         .find(|node| node.attribute("stroke") == Some("#c62f2f"))
@@ -44,13 +45,13 @@ fn a_curve_of_an_svg_leads_from_corner_to_corner() {
     for (at, expected) in ends.iter().zip([[left, top + height], [left + width, top]]) {
         assert!(
             (at[0] - expected[0]).abs() < 0.011 && (at[1] - expected[1]).abs() < 0.011,
-            "{at:?} {expected:?}"
+            "the curve has an end at {at:?}, expected {expected:?}"
         );
     }
 }
 
 #[test]
-fn an_svg_is_as_wide_as_the_column_and_its_words_are_words() {
+fn an_svg_file_has_the_width_of_the_column_and_text_elements_of_at_least_7_pt() {
     for width in ColumnWidth::BOTH {
         let text = String::from_utf8(bytes(&diagonal(), width, FigureFormat::Svg)).unwrap();
         let document = Document::parse(&text).unwrap();
@@ -62,7 +63,7 @@ fn an_svg_is_as_wide_as_the_column_and_its_words_are_words() {
         let words: Vec<&str> = document
             .descendants()
             .filter(|node| node.has_tag_name("text"))
-            .filter_map(|n| n.text())
+            .filter_map(|node| node.text())
             .collect();
         for expected in [
             "A line & <its> frame → Δφ",
@@ -73,7 +74,10 @@ fn an_svg_is_as_wide_as_the_column_and_its_words_are_words() {
             "10",
             "−4",
         ] {
-            assert!(words.contains(&expected), "{expected} in {words:?}");
+            assert!(
+                words.contains(&expected),
+                "{expected} is missing in {words:?}"
+            );
         }
         let sizes = document
             .descendants()
@@ -81,14 +85,14 @@ fn an_svg_is_as_wide_as_the_column_and_its_words_are_words() {
             .map(|size| size.parse::<f64>());
         assert!(
             sizes.map(Result::unwrap).all(|size| size >= 7.0),
-            "journals take no smaller letters"
+            "a text is smaller than 7 pt, the minimum of journals"
         );
     }
 }
 
 #[test]
-fn nothing_of_an_svg_lies_outside_the_paper() {
-    let example = &*crate::figures::EXAMPLE;
+fn the_texts_of_every_figure_lie_within_the_page() {
+    let example = &*EXAMPLE;
     for kind in FigureKind::ALL {
         let figure = example.figure(kind, example.on_axis());
         for width in ColumnWidth::BOTH {
@@ -129,12 +133,13 @@ fn decoded(bytes: &[u8]) -> (usize, usize, Vec<[u8; 3]>) {
 }
 
 #[test]
-fn a_png_has_300_dots_to_the_inch_and_the_curve_in_its_colour_where_it_runs() {
+fn a_png_file_has_300_dpi_and_the_colour_of_the_curve_on_the_diagonal() {
     let (width, height, colors) =
         decoded(&bytes(&diagonal(), ColumnWidth::Single, FigureFormat::Png));
     let text =
         String::from_utf8(bytes(&diagonal(), ColumnWidth::Single, FigureFormat::Svg)).unwrap();
     let document = Document::parse(&text).unwrap();
+    // A single column is 84 mm wide.
     assert_eq!(width, (84.0_f64 / 25.4 * 300.0).ceil() as usize);
     let view: Vec<f64> = document
         .root_element()
@@ -145,16 +150,17 @@ fn a_png_has_300_dots_to_the_inch_and_the_curve_in_its_colour_where_it_runs() {
         .collect();
     assert!((height as f64 - view[3] * 300.0 / 72.0).abs() < 1.1);
     let [left, top, frame_width, frame_height] = frame(&document);
-    let at =
+    // Positions in points, 72 to the inch.
+    let color_at =
         |x: f64, y: f64| colors[(y * 300.0 / 72.0) as usize * width + (x * 300.0 / 72.0) as usize];
     // A point at a tenth of the diagonal, at the centre of the line of 3 pt; then a point of the
     // background away from it.
     assert_eq!(
-        at(left + 0.1 * frame_width, top + 0.9 * frame_height),
+        color_at(left + 0.1 * frame_width, top + 0.9 * frame_height),
         [0xc6, 0x2f, 0x2f]
     );
     assert_eq!(
-        at(left + 0.13 * frame_width, top + 0.33 * frame_height),
+        color_at(left + 0.13 * frame_width, top + 0.33 * frame_height),
         [255, 255, 255]
     );
     assert_eq!(colors[0], [255, 255, 255]);
@@ -186,12 +192,13 @@ fn streams(pdf: &[u8]) -> Vec<Vec<u8>> {
 }
 
 #[test]
-fn a_pdf_holds_its_letters_and_the_characters_that_they_stand_for() {
+fn a_pdf_file_embeds_its_fonts_and_maps_glyphs_to_characters() {
     let pdf = bytes(&diagonal(), ColumnWidth::Single, FigureFormat::Pdf);
     assert!(pdf.starts_with(b"%PDF-1."));
     assert!(pdf.ends_with(b"%%EOF"));
     let text = String::from_utf8_lossy(&pdf).into_owned();
     for word in [
+        // 84 mm, the width of a single column.
         "/MediaBox [0 0 238.11",
         "/Subtype /CIDFontType2",
         "/FontFile2",
@@ -204,14 +211,14 @@ fn a_pdf_holds_its_letters_and_the_characters_that_they_stand_for() {
     for word in ["/CreationDate", "/ModDate", "/ID"] {
         assert!(
             !text.contains(word),
-            "{word} would differ from one file to the next"
+            "{word} differs from one file to the next"
         );
     }
     let streams = streams(&pdf);
     let content = String::from_utf8_lossy(&streams[0]).into_owned();
     assert!(
         content.contains("BT") && content.contains(" Tf") && content.contains(" Tj"),
-        "text is drawn as text"
+        "the page should contain text operators"
     );
     let maps: Vec<String> = streams
         .iter()
@@ -222,13 +229,13 @@ fn a_pdf_holds_its_letters_and_the_characters_that_they_stand_for() {
         assert!(
             maps.iter()
                 .any(|map| map.contains("begincmap") && map.contains(&code)),
-            "{character} can be found"
+            "no character map contains {character}"
         );
     }
 }
 
 #[test]
-fn the_same_figure_makes_the_same_bytes() {
+fn the_same_figure_gives_the_same_bytes() {
     for format in FigureFormat::ALL {
         let once = bytes(&diagonal(), ColumnWidth::Double, format);
         assert_eq!(
@@ -241,7 +248,7 @@ fn the_same_figure_makes_the_same_bytes() {
 }
 
 #[test]
-fn a_name_with_signs_that_xml_has_no_place_for_is_still_xml() {
+fn characters_that_xml_forbids_are_escaped_or_removed() {
     let figure = Figure::new("a\u{1}b\u{fffe}c\"<&>").plot(diagonal().plots.remove(0));
     let text = svg(&figure);
     let document = Document::parse(&text).unwrap();

@@ -23,7 +23,7 @@ fn legend(figure: &Figure) -> Vec<String> {
 }
 
 #[test]
-fn the_legend_of_a_bode_figure_names_the_roles_that_are_present() {
+fn the_legend_of_a_bode_figure_names_the_visible_roles() {
     let example = &*EXAMPLE;
     let pair = example.pair("Q", "LON");
     let figure = example.figure(FigureKind::Bode, vec![pair]);
@@ -59,7 +59,7 @@ fn the_legend_of_a_bode_figure_names_the_roles_that_are_present() {
 }
 
 #[test]
-fn a_figure_says_dataset_condition_and_what_was_rejected_and_no_date() {
+fn a_figure_names_the_dataset_the_condition_and_the_rejected_models() {
     let example = &*EXAMPLE;
     let figure = example.figure(FigureKind::Bode, vec![example.pair("Q", "LON")]);
     assert!(
@@ -74,14 +74,14 @@ fn a_figure_says_dataset_condition_and_what_was_rejected_and_no_date() {
     ] {
         assert!(
             figure.caption.contains(words),
-            "{words} in: {}",
+            "{words} is missing in: {}",
             figure.caption
         );
     }
 }
 
 #[test]
-fn on_axis_responses_stand_side_by_side_with_a_magnitude_above_a_phase() {
+fn each_on_axis_response_has_a_plot_of_magnitude_and_phase() {
     let example = &*EXAMPLE;
     let figure = example.figure(FigureKind::Bode, example.on_axis());
     assert_eq!(figure.plots.len(), 5);
@@ -90,7 +90,7 @@ fn on_axis_responses_stand_side_by_side_with_a_magnitude_above_a_phase() {
 }
 
 #[test]
-fn frequencies_in_hertz_are_those_of_the_curves_over_two_pi() {
+fn frequencies_in_hertz_are_those_of_the_curves_divided_by_two_pi() {
     let example = &*EXAMPLE;
     let request = FigureRequest {
         bode: BodeOptions {
@@ -132,7 +132,7 @@ fn net_gains_have_a_dot_for_each_condition_and_the_schedule() {
 }
 
 #[test]
-fn channels_stand_over_conditions_in_file_order_with_their_bounds() {
+fn delays_of_channels_are_plotted_over_conditions_in_file_order_with_their_bounds() {
     let example = &*EXAMPLE;
     let request = FigureRequest {
         across: Across::Conditions,
@@ -151,7 +151,7 @@ fn channels_stand_over_conditions_in_file_order_with_their_bounds() {
 }
 
 #[test]
-fn an_assessment_names_what_is_left_out_and_why() {
+fn an_assessment_names_the_condition_left_out_and_the_reason() {
     let example = &*EXAMPLE;
     let figure = example.figure(FigureKind::Assessment, example.on_axis());
     let why = not_assessed_text(
@@ -172,8 +172,7 @@ fn an_assessment_names_what_is_left_out_and_why() {
 }
 
 #[test]
-fn the_error_of_the_reference_is_nothing_and_a_correction_moves_the_median_of_a_held_response_to_zero()
- {
+fn the_reference_has_zero_error_and_the_corrected_median_of_a_held_response_is_near_zero() {
     let example = &*EXAMPLE;
     let pair = example.pair("Q", "LON");
     let table = example
@@ -209,7 +208,7 @@ fn the_error_of_the_reference_is_nothing_and_a_correction_moves_the_median_of_a_
 }
 
 #[test]
-fn evidence_stacks_the_shares_of_each_split_and_shows_the_rest_with_its_interval() {
+fn evidence_stacks_the_shares_of_each_variance_to_100_percent() {
     let example = &*EXAMPLE;
     let figure = example.figure(FigureKind::Evidence, example.on_axis());
     let uncertainty = example.analysis.uncertainty.as_ref().unwrap();
@@ -236,12 +235,9 @@ fn evidence_stacks_the_shares_of_each_split_and_shows_the_rest_with_its_interval
         let bars: Vec<&Bars> = plot.panels[0]
             .marks
             .iter()
-            .filter_map(|mark| {
-                if let Mark::Bars(bars) = mark {
-                    Some(bars)
-                } else {
-                    None
-                }
+            .filter_map(|mark| match mark {
+                Mark::Bars(bars) => Some(bars),
+                _ => None,
             })
             .collect();
         for (place, split) in [&scatter.same_airspeed, &scatter.about_schedule]
@@ -261,13 +257,13 @@ fn evidence_stacks_the_shares_of_each_split_and_shows_the_rest_with_its_interval
                 foot += 100.0 * share;
             }
             // Rounding of a sum of three quotients with the same denominator.
-            assert!((foot - 100.0).abs() < 1e-9, "{foot}");
+            assert!((foot - 100.0).abs() < 1e-9, "the shares sum to {foot} %");
         }
     }
 }
 
 #[test]
-fn the_numbers_of_evidence_name_what_the_scatter_is_about() {
+fn the_table_of_evidence_has_the_scatter_about_the_schedule() {
     let example = &*EXAMPLE;
     let figure = example.figure(FigureKind::Evidence, example.on_axis());
     let split = example.analysis.uncertainty.as_ref().unwrap().scatter[0]
@@ -291,7 +287,7 @@ fn the_numbers_of_evidence_name_what_the_scatter_is_about() {
 }
 
 #[test]
-fn without_error_bars_there_is_no_evidence() {
+fn evidence_needs_error_bars_and_an_on_axis_response() {
     let example = &*EXAMPLE;
     let request = FigureRequest::new(FigureKind::Evidence, example.on_axis(), Vec::new());
     let bare = Analysis {
@@ -306,7 +302,7 @@ fn without_error_bars_there_is_no_evidence() {
     assert_eq!(
         off_axis.figure(Some(&example.analysis), None),
         None,
-        "an off-axis response has no split"
+        "the variance of an off-axis response is not decomposed"
     );
 }
 
@@ -334,7 +330,7 @@ fn labels_on_paper(figure: &Figure, width: ColumnWidth) -> Vec<(String, Area)> {
 }
 
 #[test]
-fn numbers_and_factors_of_net_gains_do_not_cover_one_another_on_paper() {
+fn condition_numbers_and_factors_of_net_gains_do_not_overlap_on_paper() {
     let example = &*EXAMPLE;
     let figure = example.figure(FigureKind::NetGain, example.on_axis());
     let uncertainty = example.analysis.uncertainty.as_ref().unwrap();
@@ -343,7 +339,7 @@ fn numbers_and_factors_of_net_gains_do_not_cover_one_another_on_paper() {
         .into_iter()
         .flat_map(|pair| uncertainty.greatest_differences(pair));
     let factors = greatest
-        .filter(|of| of.is_significant(uncertainty.level))
+        .filter(|difference| difference.is_significant(uncertainty.level))
         .count();
     for width in ColumnWidth::BOTH {
         let labels = labels_on_paper(&figure, width);
@@ -358,13 +354,13 @@ fn numbers_and_factors_of_net_gains_do_not_cover_one_another_on_paper() {
         assert_eq!(
             labels.len(),
             5 * 11 + factors,
-            "every condition of every response has its number: {width:?}"
+            "every condition of every response should have its number: {width:?}"
         );
         for (index, (words, area)) in labels.iter().enumerate() {
             for (other, beside) in &labels[..index] {
                 assert!(
                     area.overlap(beside) < 0.05 * area.size(),
-                    "{width:?}: {words} at {area:?} and {other}"
+                    "{width:?}: {words} at {area:?} overlaps {other}"
                 );
             }
         }
@@ -372,7 +368,7 @@ fn numbers_and_factors_of_net_gains_do_not_cover_one_another_on_paper() {
 }
 
 #[test]
-fn net_gains_on_paper_have_their_bars_and_brackets() {
+fn net_gains_on_paper_have_error_bars_and_brackets() {
     let example = &*EXAMPLE;
     let pair = example.pair("NZ", "COL");
     let figure = example.figure(FigureKind::NetGain, vec![pair]);
@@ -417,7 +413,7 @@ fn net_gains_on_paper_have_their_bars_and_brackets() {
 }
 
 #[test]
-fn the_quantiles_of_an_error_are_those_of_the_representative_even_where_its_curve_is_hidden() {
+fn the_quantiles_of_the_error_remain_when_the_curve_of_the_representative_is_hidden() {
     let example = &*EXAMPLE;
     let quantiles = |hidden: &[Role]| {
         let bode = BodeOptions {
@@ -431,11 +427,11 @@ fn the_quantiles_of_an_error_are_those_of_the_representative_even_where_its_curv
         });
         let table = figure.tables().remove(0);
         let columns: Vec<usize> = (0..table.columns.len())
-            .filter(|at| table.columns[*at].contains("quantile"))
+            .filter(|column| table.columns[*column].contains("quantile"))
             .collect();
         columns
             .iter()
-            .map(|at| table.rows[0][*at].clone())
+            .map(|column| table.rows[0][*column].clone())
             .collect::<Vec<String>>()
     };
     let shown = quantiles(&[]);
@@ -467,12 +463,16 @@ fn a_physics_parameter_is_drawn_in_every_condition_with_the_misfit_that_remains(
     let ratios: Vec<f64> = steps.iter().map(|step| 100.0 * step.score.ratio).collect();
     let remaining: Vec<f64> = misfit.panels[0].dots().map(|dot| dot.y).collect();
     assert_eq!(remaining, ratios);
-    assert_eq!(remaining[0], 100.0, "without parameters");
+    assert_eq!(
+        remaining[0], 100.0,
+        "the misfit without parameters should be 100 %"
+    );
 }
 
-/// J (eq. (14) to (19)) of the drawn curves, recomputed from their definition, is the J in the title.
+/// J of the drawn curves, recomputed from its definition (eq. (14) to (19)), equals the J in the
+/// title.
 #[test]
-fn responses_before_and_after_the_parameters_keep_the_cost_of_their_shape() {
+fn the_drawn_responses_reproduce_the_cost_of_the_changed_parameters() {
     let figure = EXAMPLE.figure(FigureKind::PhysicsChange, Vec::new());
     let effect = &EXAMPLE.physics.conditions[&CONDITION];
     let (poles, responses) = figure.plots.split_last().unwrap();
@@ -491,7 +491,7 @@ fn responses_before_and_after_the_parameters_keep_the_cost_of_their_shape() {
             let mut squares: Vec<f64> = errors
                 .map(|(reference, moved)| {
                     let error = moved - reference;
-                    // Turns are whole; only phases can differ by more than half a turn.
+                    // Whole turns do not count; magnitudes differ by less than half of 360 dB.
                     let error = error - 360.0 * (error / 360.0).round();
                     error * error
                 })
@@ -501,7 +501,7 @@ fn responses_before_and_after_the_parameters_keep_the_cost_of_their_shape() {
         // Relative tolerance: the errors are differences of values up to 1e3, rounded to 1e-13.
         assert!(
             (cost - expected).abs() < 1e-9 * expected.max(1.0),
-            "{cost} {expected}"
+            "J of the analysis {cost}, of the drawn curves {expected}"
         );
     }
     assert!(improvements[0] > 0.0);

@@ -10,8 +10,8 @@ pub(super) fn file(dice: &mut Dice) -> NamedBytes {
     if dice.once_in(2) {
         file.with_userblock(512);
     }
-    for at in 0..1 + dice.below(4) {
-        let name = name(dice, at);
+    for index in 0..1 + dice.below(4) {
+        let name = name(dice, index);
         if dice.once_in(3) {
             let mut group = file.create_group(&name);
             fill(dice, &mut group, 3);
@@ -25,26 +25,33 @@ pub(super) fn file(dice: &mut Dice) -> NamedBytes {
     ("f.h5".to_owned(), file.finish().unwrap_or_default())
 }
 
-fn name(dice: &mut Dice, at: usize) -> String {
+/// Generates a name that the readers recognise, a reserved one, or one with a number.
+fn name(dice: &mut Dice, index: usize) -> String {
     match dice.below(6) {
-        0 => format!("v{at}"),
+        0 => format!("v{index}"),
         1 => ["#refs#", "#subsystem#", "MCOS", "ir", "jc", "data"][dice.below(6)].to_owned(),
-        _ => Some(*dice.of_list(&NAMES))
-            .filter(|name| !name.is_empty())
-            .unwrap_or("e")
-            .to_owned(),
+        _ => {
+            let name = *dice.pick(&NAMES);
+            // HDF5 does not permit an empty name.
+            if name.is_empty() {
+                "e".to_owned()
+            } else {
+                name.to_owned()
+            }
+        }
     }
 }
 
-fn fill(dice: &mut Dice, group: &mut GroupBuilder, deeper: usize) {
+/// Adds attributes, datasets and, while `depth` is positive, groups to a group.
+fn fill(dice: &mut Dice, group: &mut GroupBuilder, depth: usize) {
     for (name, value) in attributes(dice) {
         group.set_attr(name, value);
     }
-    for at in 0..dice.below(5) {
-        let name = name(dice, at);
-        if deeper > 0 && dice.once_in(4) {
+    for index in 0..dice.below(5) {
+        let name = name(dice, index);
+        if depth > 0 && dice.once_in(4) {
             let mut inner = group.create_group(&name);
-            fill(dice, &mut inner, deeper - 1);
+            fill(dice, &mut inner, depth - 1);
             group.add_group(inner.finish());
         } else {
             dataset(dice, group.create_dataset(&name));
@@ -52,10 +59,11 @@ fn fill(dice: &mut Dice, group: &mut GroupBuilder, deeper: usize) {
     }
 }
 
+/// Generates the attributes with which MATLAB marks the class of a value.
 fn attributes(dice: &mut Dice) -> Vec<(&'static str, AttrValue)> {
-    let mut found = Vec::new();
+    let mut attributes = Vec::new();
     if dice.once_in(2) {
-        let numbers = [
+        let value_classes = [
             "double",
             "char",
             "cell",
@@ -66,11 +74,11 @@ fn attributes(dice: &mut Dice) -> Vec<(&'static str, AttrValue)> {
             "canonical empty",
         ];
         let class = if dice.once_in(4) {
-            *dice.of_list(&CLASSES)
+            *dice.pick(&CLASSES)
         } else {
-            *dice.of_list(&numbers)
+            *dice.pick(&value_classes)
         };
-        found.push(("MATLAB_class", AttrValue::AsciiString(class.into())));
+        attributes.push(("MATLAB_class", AttrValue::AsciiString(class.into())));
     }
     let number = |dice: &mut Dice| {
         if dice.once_in(8) {
@@ -79,16 +87,16 @@ fn attributes(dice: &mut Dice) -> Vec<(&'static str, AttrValue)> {
             dice.below(5) as u64
         }
     };
-    for (name, often) in [
+    for (name, times) in [
         ("MATLAB_empty", 8),
         ("MATLAB_sparse", 8),
         ("MATLAB_object_decode", 6),
     ] {
-        if dice.once_in(often) {
-            found.push((name, AttrValue::U64(number(dice))));
+        if dice.once_in(times) {
+            attributes.push((name, AttrValue::U64(number(dice))));
         }
     }
-    found
+    attributes
 }
 
 fn dataset(dice: &mut Dice, dataset: &mut DatasetBuilder) {
@@ -107,6 +115,7 @@ fn dataset(dice: &mut Dice, dataset: &mut DatasetBuilder) {
                 .map(|number| number as u16)
                 .collect::<Vec<_>>(),
         ),
+        // The header with which MATLAB refers to an object.
         2 => dataset.with_u32_data(&[0xdd00_0000, 2, 1, 1, 1, 1]),
         3 => dataset.with_u64_data(
             &numbers
@@ -115,12 +124,12 @@ fn dataset(dice: &mut Dice, dataset: &mut DatasetBuilder) {
                 .collect::<Vec<_>>(),
         ),
         4 => {
-            let texts: Vec<&str> = (0..count).map(|_| *dice.of_list(&NAMES)).collect();
+            let texts: Vec<&str> = (0..count).map(|_| *dice.pick(&NAMES)).collect();
             dataset.with_vlen_strings(&texts)
         }
         5 => {
             let paths: Vec<&str> = (0..count)
-                .map(|_| *dice.of_list(&["x", "A", "v0", "#refs#", "Data_/A"]))
+                .map(|_| *dice.pick(&["x", "A", "v0", "#refs#", "Data_/A"]))
                 .collect();
             dataset.with_path_references(&paths)
         }

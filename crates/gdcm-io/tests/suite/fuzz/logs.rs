@@ -1,8 +1,8 @@
 //! Random generators of flight logs: ULog, DataFlash in binary and text form, Blackbox.
 
-use super::{Dice, HARD, NamedBytes};
+use super::{Dice, EXTREME_LENGTHS, NamedBytes};
 
-/// Generates a log of one of these systems.
+/// Generates a log in one of these formats.
 pub(super) fn file(dice: &mut Dice) -> NamedBytes {
     let (name, bytes) = match dice.below(4) {
         0 => ("f.ulg", ulog(dice)),
@@ -13,12 +13,14 @@ pub(super) fn file(dice: &mut Dice) -> NamedBytes {
     (name.to_owned(), bytes)
 }
 
-fn junk(dice: &mut Dice, most: usize) -> Vec<u8> {
+/// Generates up to `most - 1` random bytes.
+fn random_bytes(dice: &mut Dice, most: usize) -> Vec<u8> {
     (0..dice.below(most))
         .map(|_| dice.below(256) as u8)
         .collect()
 }
 
+/// Returns a ULog message: length, kind, content.
 fn message(kind: u8, content: &[u8]) -> Vec<u8> {
     [&(content.len() as u16).to_le_bytes()[..], &[kind], content].concat()
 }
@@ -42,16 +44,15 @@ fn ulog(dice: &mut Dice) -> Vec<u8> {
     if dice.once_in(2) {
         let mut flags = vec![0; 16];
         flags[8] = dice.once_in(2).into();
-        (0..3).for_each(|_| {
-            flags.extend(
-                u64::from(if dice.once_in(2) {
-                    0
-                } else {
-                    dice.below(2000) as u32
-                })
-                .to_le_bytes(),
-            )
-        });
+        // Offsets of appended data.
+        for _ in 0..3 {
+            let offset = if dice.once_in(2) {
+                0
+            } else {
+                dice.below(2000) as u64
+            };
+            flags.extend(offset.to_le_bytes());
+        }
         bytes.extend(message(b'B', &flags));
     }
     for name in [
@@ -60,15 +61,15 @@ fn ulog(dice: &mut Dice) -> Vec<u8> {
         "vehicle_angular_velocity",
         "vehicle_status",
     ] {
-        let mut layout = format!(
-            "{name}:{}",
-            if dice.once_in(8) {
-                ""
-            } else {
-                "uint64_t timestamp;"
-            }
-        );
-        (0..dice.below(5)).for_each(|at| layout += &format!("{} f{at};", dice.of_list(&TYPES)));
+        let timestamp = if dice.once_in(8) {
+            ""
+        } else {
+            "uint64_t timestamp;"
+        };
+        let mut layout = format!("{name}:{timestamp}");
+        for index in 0..dice.below(5) {
+            layout += &format!("{} f{index};", dice.pick(&TYPES));
+        }
         layout += if name == "vehicle_status" {
             "uint8_t arming_state;uint8_t nav_state;"
         } else {
@@ -77,7 +78,7 @@ fn ulog(dice: &mut Dice) -> Vec<u8> {
         bytes.extend(message(b'F', layout.as_bytes()));
     }
     for number in 0..dice.below(5) as u8 {
-        let name = *dice.of_list(&[
+        let name = *dice.pick(&[
             "outer",
             "vehicle_angular_velocity",
             "vehicle_status",
@@ -88,19 +89,19 @@ fn ulog(dice: &mut Dice) -> Vec<u8> {
             &[&[dice.below(3) as u8, number, 0][..], name.as_bytes()].concat(),
         ));
     }
-    for at in 0..dice.below(200) as u64 {
+    for sample in 0..dice.below(200) as u64 {
         let stamp = if dice.once_in(30) {
-            u64::from(*dice.of_list(&HARD))
+            u64::from(*dice.pick(&EXTREME_LENGTHS))
         } else {
-            4000 * at
+            4000 * sample
         };
         let data = [
             &[dice.below(5) as u8, 0][..],
             &stamp.to_le_bytes(),
-            &junk(dice, 60),
+            &random_bytes(dice, 60),
         ]
         .concat();
-        bytes.extend(message(*dice.of_list(b"DDDDDDDOLIP"), &data));
+        bytes.extend(message(*dice.pick(b"DDDDDDDOLIP"), &data));
     }
     bytes
 }
@@ -136,10 +137,10 @@ fn dataflash(dice: &mut Dice) -> Vec<u8> {
     ));
     for kind in 140..140 + dice.below(5) as u8 {
         let letters: String = (0..1 + dice.below(6))
-            .map(|_| char::from(*dice.of_list(LETTERS)))
+            .map(|_| char::from(*dice.pick(LETTERS)))
             .collect();
-        let name = *dice.of_list(&["RATE", "IMU", "MODE", "ARM", "SIDD", "UNIT", "MULT", "FMTU"]);
-        let names = *dice.of_list(&[
+        let name = *dice.pick(&["RATE", "IMU", "MODE", "ARM", "SIDD", "UNIT", "MULT", "FMTU"]);
+        let names = *dice.pick(&[
             "TimeUS,I,GyrX",
             "TimeUS,R,ROut,P",
             "TimeMS,Mode",
@@ -163,12 +164,12 @@ fn dataflash(dice: &mut Dice) -> Vec<u8> {
         .concat();
         bytes.extend(units);
     }
-    for at in 0..dice.below(200) as u64 {
+    for sample in 0..dice.below(200) as u64 {
         bytes.extend(
             [
                 &[0xa3, 0x95, 138 + dice.below(8) as u8][..],
-                &(2500 * at).to_le_bytes(),
-                &junk(dice, 40),
+                &(2500 * sample).to_le_bytes(),
+                &random_bytes(dice, 40),
             ]
             .concat(),
         );
@@ -180,18 +181,18 @@ fn dataflash_text(dice: &mut Dice) -> Vec<u8> {
     let mut text = "FMT, 128, 89, FMT, BBnNZ, Type,Length,Name,Format,Columns\n".to_owned();
     text += &format!(
         "FMT, 140, 19, RATE, {}, TimeUS,R,ROut\n",
-        dice.of_list(&["Qff", "Q", "QffZ", "??"])
+        dice.pick(&["Qff", "Q", "QffZ", "??"])
     );
     text += &format!(
         "FMTU, 0, {}, s#k, F--\nUNIT, 0, {}, deg/s\n",
         dice.number(),
         dice.number()
     );
-    for at in 0..dice.below(200) {
+    for sample in 0..dice.below(200) {
         text += &format!(
             "{}, {}, {}, {}\n",
-            dice.of_list(&["RATE", "MODE", ""]),
-            2500 * at,
+            dice.pick(&["RATE", "MODE", ""]),
+            2500 * sample,
             dice.number(),
             dice.number()
         );
@@ -205,27 +206,30 @@ fn blackbox(dice: &mut Dice) -> Vec<u8> {
         bytes.extend(b"H Product:Blackbox flight data recorder\nH Data version:2\n");
         let fields = 1 + dice.below(12);
         let names: Vec<String> = (0..fields)
-            .map(|at| ["time", "axisP[0]", "gyroADC[0]", "motor[0]", "x"][at.min(4)].to_owned())
+            .map(|index| {
+                ["time", "axisP[0]", "gyroADC[0]", "motor[0]", "x"][index.min(4)].to_owned()
+            })
             .collect();
         bytes.extend(
             format!("H Field I name:{}\nH Field S name:flags\n", names.join(",")).into_bytes(),
         );
         for (kind, count) in [("I", fields), ("P", fields), ("S", 1)] {
-            for what in ["signed", "predictor", "encoding"] {
-                let known: &[u8] = if what == "encoding" {
+            for property in ["signed", "predictor", "encoding"] {
+                let known: &[u8] = if property == "encoding" {
                     &[0, 1, 3, 6, 7, 8, 9]
                 } else {
                     &[0, 1, 2, 3, 5, 8, 11]
                 };
-                let numbers: Vec<String> = (0..count)
-                    .map(|_| dice.of_list(known).to_string())
-                    .collect();
-                bytes.extend(format!("H Field {kind} {what}:{}\n", numbers.join(",")).into_bytes());
+                let numbers: Vec<String> =
+                    (0..count).map(|_| dice.pick(known).to_string()).collect();
+                bytes.extend(
+                    format!("H Field {kind} {property}:{}\n", numbers.join(",")).into_bytes(),
+                );
             }
         }
         bytes.extend(b"H gyro_scale:0x3f800000\nH motorOutput:158,2047\n");
         for _ in 0..dice.below(300) {
-            bytes.push(*dice.of_list(b"IIPPPPPSEGH"));
+            bytes.push(*dice.pick(b"IIPPPPPSEGH"));
             bytes.extend((0..fields).map(|_| dice.below(128) as u8));
         }
     }

@@ -9,15 +9,15 @@ use super::matlab_files::{
     Directory, chars, column, doubles, element, file_with_objects, matrix, opaque, record,
     reference, words_of,
 };
-use super::{CLASSES, Dice, HARD, NAMES, NamedBytes};
+use super::{CLASSES, Dice, EXTREME_LENGTHS, NAMES, NamedBytes};
 
 /// Generates a file of a few variables of any kind.
 pub(super) fn file(dice: &mut Dice) -> NamedBytes {
-    let variables = (0..1 + dice.below(4)).flat_map(|at| {
+    let variables = (0..1 + dice.below(4)).flat_map(|index| {
         let name = if dice.once_in(4) {
-            format!("v{at}")
+            format!("v{index}")
         } else {
-            (*dice.of_list(&NAMES)).to_owned()
+            (*dice.pick(&NAMES)).to_owned()
         };
         let variable = if dice.once_in(3) {
             model(dice, &name)
@@ -37,46 +37,46 @@ pub(super) fn file(dice: &mut Dice) -> NamedBytes {
 /// Generates a file of objects, with the subsystem data in which their contents are stored.
 pub(super) fn file_of_objects(dice: &mut Dice) -> NamedBytes {
     let names: Vec<&str> = (0..4 + dice.below(8))
-        .map(|at| {
-            if at % 2 == 0 {
-                *dice.of_list(&CLASSES)
+        .map(|index| {
+            if index % 2 == 0 {
+                *dice.pick(&CLASSES)
             } else {
-                *dice.of_list(&NAMES)
+                *dice.pick(&NAMES)
             }
         })
         .collect();
     // Indices are valid or one too large; about one in 40 is an extreme value.
-    let within = |dice: &mut Dice, count: usize| match dice.below(40) {
-        0 => *dice.of_list(&HARD),
+    let index_up_to = |dice: &mut Dice, count: usize| match dice.below(40) {
+        0 => *dice.pick(&EXTREME_LENGTHS),
         _ => dice.below(count + 1) as u32,
     };
     let classes = 1 + dice.below(4);
     let lists = 1 + dice.below(4);
     let objects = 1 + dice.below(5);
     let values = 1 + dice.below(6);
-    let list = |dice: &mut Dice| -> Vec<[u32; 3]> {
+    let property_list = |dice: &mut Dice| -> Vec<[u32; 3]> {
         let properties = 0..dice.below(6);
         properties
             .map(|_| {
                 [
-                    within(dice, names.len()),
+                    index_up_to(dice, names.len()),
                     dice.below(3) as u32,
-                    within(dice, values),
+                    index_up_to(dice, values),
                 ]
             })
             .collect()
     };
     let classes: Vec<[u32; 2]> = (0..classes)
-        .map(|_| [0, within(dice, names.len())])
+        .map(|_| [0, index_up_to(dice, names.len())])
         .collect();
-    let made: Vec<Vec<[u32; 3]>> = (0..dice.below(3)).map(|_| list(dice)).collect();
-    let plain: Vec<Vec<[u32; 3]>> = (0..lists).map(|_| list(dice)).collect();
+    let made: Vec<Vec<[u32; 3]>> = (0..dice.below(3)).map(|_| property_list(dice)).collect();
+    let plain: Vec<Vec<[u32; 3]>> = (0..lists).map(|_| property_list(dice)).collect();
     let entries: Vec<[u32; 3]> = (0..objects)
         .map(|_| {
             [
-                within(dice, classes.len()),
+                index_up_to(dice, classes.len()),
                 if dice.once_in(4) { 1 } else { 0 },
-                within(dice, lists),
+                index_up_to(dice, lists),
             ]
         })
         .collect();
@@ -93,16 +93,16 @@ pub(super) fn file_of_objects(dice: &mut Dice) -> NamedBytes {
         objects: &entries,
         plain: &plain.iter().map(Vec::as_slice).collect::<Vec<_>>(),
     };
-    let refer = |dice: &mut Dice| {
+    let random_reference = |dice: &mut Dice| {
         let count = if dice.once_in(5) { dice.below(4) } else { 1 };
-        let numbers: Vec<u32> = (0..count).map(|_| within(dice, objects)).collect();
-        reference(&numbers, within(dice, classes.len()))
+        let numbers: Vec<u32> = (0..count).map(|_| index_up_to(dice, objects)).collect();
+        reference(&numbers, index_up_to(dice, classes.len()))
     };
     let mut cells = vec![directory.cell(), doubles("", &[0, 0], &[])];
     for _ in 0..values {
         let cell = match dice.below(3) {
-            0 => refer(dice),
-            1 => column(&[refer(dice), refer(dice)]),
+            0 => random_reference(dice),
+            1 => column(&[random_reference(dice), random_reference(dice)]),
             _ => value(dice, "", 2),
         };
         cells.push(cell);
@@ -110,15 +110,15 @@ pub(super) fn file_of_objects(dice: &mut Dice) -> NamedBytes {
     cells.extend((2..version).map(|_| doubles("", &[0, 0], &[])));
     let defaults: Vec<Vec<u8>> = (0..=classes.len()).map(|_| value(dice, "", 2)).collect();
     cells.push(column(&defaults));
-    let variables = (0..1 + dice.below(3)).flat_map(|at| {
-        let class = *dice.of_list(&CLASSES);
+    let variables = (0..1 + dice.below(3)).flat_map(|index| {
+        let class = *dice.pick(&CLASSES);
         opaque(
-            &format!("o{at}"),
+            &format!("o{index}"),
             class,
             if dice.once_in(10) {
                 value(dice, "", 2)
             } else {
-                refer(dice)
+                random_reference(dice)
             },
         )
     });
@@ -129,6 +129,7 @@ pub(super) fn file_of_objects(dice: &mut Dice) -> NamedBytes {
     )
 }
 
+/// Returns a variable in a compressed element (type 15).
 fn packed(variable: &[u8]) -> Vec<u8> {
     let mut encoder = ZlibEncoder::new(Vec::new(), Compression::fast());
     encoder.write_all(variable).unwrap();
@@ -150,12 +151,13 @@ fn shape(dice: &mut Dice) -> (Vec<i32>, usize) {
     let count = sides.iter().product();
     let mut shape: Vec<i32> = sides.iter().map(|&side| side as i32).collect();
     if dice.once_in(30) {
-        let at = dice.below(shape.len());
-        shape[at] = *dice.of_list(&HARD) as i32;
+        let dimension = dice.below(shape.len());
+        shape[dimension] = *dice.pick(&EXTREME_LENGTHS) as i32;
     }
     (shape, count)
 }
 
+/// Generates an element of `count` numbers of a random type (the number before the data).
 fn numbers(dice: &mut Dice, count: usize) -> Vec<u8> {
     let values: Vec<f64> = (0..count).map(|_| dice.number()).collect();
     let each = |bytes: fn(f64) -> Vec<u8>| {
@@ -175,14 +177,14 @@ fn numbers(dice: &mut Dice, count: usize) -> Vec<u8> {
     }
 }
 
-/// Generates a value of any kind; `deeper` limits the nesting.
-fn value(dice: &mut Dice, name: &str, deeper: usize) -> Vec<u8> {
+/// Generates a value of any kind; `depth` limits the nesting.
+fn value(dice: &mut Dice, name: &str, depth: usize) -> Vec<u8> {
     let (sides, count) = shape(dice);
-    match dice.below(if deeper == 0 { 5 } else { 10 }) {
-        0 => chars(name, dice.of_list::<&str>(&NAMES)),
+    match dice.below(if depth == 0 { 5 } else { 10 }) {
+        0 => chars(name, dice.pick::<&str>(&NAMES)),
         1 => {
             // A sparse matrix: row indices, column starts, values.
-            let places = |dice: &mut Dice, count: usize, bound: usize| {
+            let row_indices = |dice: &mut Dice, count: usize, bound: usize| {
                 let data: Vec<u8> = (0..count)
                     .flat_map(|_| (dice.below(bound) as i32).to_le_bytes())
                     .collect();
@@ -193,7 +195,7 @@ fn value(dice: &mut Dice, name: &str, deeper: usize) -> Vec<u8> {
             let starts: Vec<u8> = (0..=width)
                 .flat_map(|at| ((stored * at / width.max(1)) as i32).to_le_bytes())
                 .collect();
-            let rows = places(dice, stored, 4);
+            let rows = row_indices(dice, stored, 4);
             matrix(
                 5,
                 &sides[..2],
@@ -215,12 +217,12 @@ fn value(dice: &mut Dice, name: &str, deeper: usize) -> Vec<u8> {
             )
         }
         5 => {
-            let values: Vec<Vec<u8>> = (0..count).map(|_| value(dice, "", deeper - 1)).collect();
+            let values: Vec<Vec<u8>> = (0..count).map(|_| value(dice, "", depth - 1)).collect();
             matrix(1, &sides, name, &values)
         }
         6 => {
             let fields: Vec<(&str, Vec<u8>)> = (0..dice.below(4))
-                .map(|_| (*dice.of_list(&NAMES), value(dice, "", deeper - 1)))
+                .map(|_| (*dice.pick(&NAMES), value(dice, "", depth - 1)))
                 .collect();
             record(name, &fields)
         }
@@ -231,12 +233,12 @@ fn value(dice: &mut Dice, name: &str, deeper: usize) -> Vec<u8> {
                 .flat_map(|at| [b'a' + at as u8, 0, 0, 0])
                 .collect();
             let values: Vec<Vec<u8>> = (0..count * width)
-                .map(|_| value(dice, "", deeper - 1))
+                .map(|_| value(dice, "", depth - 1))
                 .collect();
             let head = [element(5, &4_i32.to_le_bytes()), element(1, &names)].concat();
             let is_object = dice.once_in(3);
             let class = if is_object {
-                vec![element(1, dice.of_list(&CLASSES).as_bytes())]
+                vec![element(1, dice.pick(&CLASSES).as_bytes())]
             } else {
                 Vec::new()
             };
@@ -250,7 +252,7 @@ fn value(dice: &mut Dice, name: &str, deeper: usize) -> Vec<u8> {
         8 => matrix(16, &[1, 1], name, &[value(dice, "", 0)]),
         _ => opaque(
             name,
-            dice.of_list::<&str>(&CLASSES),
+            dice.pick::<&str>(&CLASSES),
             words_of(&[0xdd00_0000, 2, 1, 1, 1, 1]),
         ),
     }
@@ -290,7 +292,7 @@ fn model(dice: &mut Dice, name: &str) -> Vec<u8> {
         ]
     };
     for _ in 0..dice.below(3) {
-        fields.push((*dice.of_list(&NAMES), value(dice, "", 1)));
+        fields.push((*dice.pick(&NAMES), value(dice, "", 1)));
     }
     record(name, &fields)
 }

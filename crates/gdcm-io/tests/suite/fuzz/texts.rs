@@ -26,14 +26,15 @@ pub(super) fn json(dice: &mut Dice) -> NamedBytes {
     }
 }
 
-fn tree(dice: &mut Dice, deeper: usize) -> Value {
+/// Generates a JSON value; `depth` limits the nesting.
+fn tree(dice: &mut Dice, depth: usize) -> Value {
     let count = dice.below(4);
-    match dice.below(if deeper == 0 { 4 } else { 9 }) {
+    match dice.below(if depth == 0 { 4 } else { 9 }) {
         0 => Value::Null,
-        1 => json!(*dice.of_list(&NAMES)),
+        1 => json!(*dice.pick(&NAMES)),
         2 => json!(dice.once_in(2)),
         3 => json!(dice.number()),
-        4 | 5 => (0..count).map(|_| tree(dice, deeper - 1)).collect(),
+        4 | 5 => (0..count).map(|_| tree(dice, depth - 1)).collect(),
         6 => {
             // A rectangular array of numbers.
             let width = dice.below(4);
@@ -43,7 +44,7 @@ fn tree(dice: &mut Dice, deeper: usize) -> Value {
         }
         _ => {
             let members =
-                (0..count).map(|_| ((*dice.of_list(&NAMES)).to_owned(), tree(dice, deeper - 1)));
+                (0..count).map(|_| ((*dice.pick(&NAMES)).to_owned(), tree(dice, depth - 1)));
             Value::Object(members.collect())
         }
     }
@@ -61,7 +62,7 @@ pub(super) fn program_json(dice: &mut Dice) -> NamedBytes {
         .iter()
         .filter(|(name, _)| name.ends_with(".json"))
         .collect();
-    let (name, bytes) = *dice.of_list(&files);
+    let (name, bytes) = *dice.pick(&files);
     let Ok(mut value) = serde_json::from_slice::<Value>(bytes) else {
         return (name.clone(), bytes.clone());
     };
@@ -71,11 +72,12 @@ pub(super) fn program_json(dice: &mut Dice) -> NamedBytes {
     (name.clone(), value.to_string().into_bytes())
 }
 
-/// Changes a value at a random place of a JSON tree.
+/// Changes a value at a random place of a JSON tree: descends into the tree, and at each level
+/// replaces the value with a probability of 1 / 6.
 fn change(value: &mut Value, dice: &mut Dice) {
-    let stay = dice.once_in(6);
+    let is_replaced = dice.once_in(6);
     match value {
-        Value::Array(list) if !stay && !list.is_empty() => {
+        Value::Array(list) if !is_replaced && !list.is_empty() => {
             let at = dice.below(list.len());
             match dice.below(12) {
                 0 => drop(list.remove(at)),
@@ -83,7 +85,7 @@ fn change(value: &mut Value, dice: &mut Dice) {
                 _ => change(&mut list[at], dice),
             }
         }
-        Value::Object(members) if !stay && !members.is_empty() => {
+        Value::Object(members) if !is_replaced && !members.is_empty() => {
             let name = members
                 .keys()
                 .nth(dice.below(members.len()))
@@ -91,11 +93,12 @@ fn change(value: &mut Value, dice: &mut Dice) {
                 .unwrap_or_default();
             match dice.below(16) {
                 0 => drop(members.remove(&name)),
-                1 => drop(members.insert((*dice.of_list(&NAMES)).to_owned(), tree(dice, 1))),
-                _ => members
-                    .get_mut(&name)
-                    .into_iter()
-                    .for_each(|value| change(value, dice)),
+                1 => drop(members.insert((*dice.pick(&NAMES)).to_owned(), tree(dice, 1))),
+                _ => {
+                    if let Some(member) = members.get_mut(&name) {
+                        change(member, dice);
+                    }
+                }
             }
         }
         Value::Number(_) if !dice.once_in(8) => *value = json!(dice.number()),
@@ -103,9 +106,9 @@ fn change(value: &mut Value, dice: &mut Dice) {
     }
 }
 
-/// Generates a table of numbers with separators, with or without headings.
+/// Generates a table of numbers with one of many separators, with or without headings.
 pub(super) fn table(dice: &mut Dice) -> NamedBytes {
-    let separator = *dice.of_list(&[",", ";", "\t", " ", "  ", "|", ", "]);
+    let separator = *dice.pick(&[",", ";", "\t", " ", "  ", "|", ", "]);
     let headings = [
         "omega [rad/s]",
         "f (Hz)",
@@ -139,7 +142,7 @@ pub(super) fn table(dice: &mut Dice) -> NamedBytes {
     if !dice.once_in(4) {
         lines.push(
             (0..width)
-                .map(|_| *dice.of_list(&headings))
+                .map(|_| *dice.pick(&headings))
                 .collect::<Vec<_>>()
                 .join(separator),
         );
@@ -166,7 +169,7 @@ pub(super) fn table(dice: &mut Dice) -> NamedBytes {
                 .join(separator),
         );
     }
-    let mut text = lines.join(*dice.of_list(&["\n", "\n", "\r\n", "\r"]));
+    let mut text = lines.join(*dice.pick(&["\n", "\n", "\r\n", "\r"]));
     if dice.once_in(60) {
         text = text.repeat(1 + 200_000 / text.len().max(1));
     }
@@ -185,10 +188,10 @@ pub(super) fn table(dice: &mut Dice) -> NamedBytes {
 pub(super) fn literals(dice: &mut Dice) -> NamedBytes {
     let mut text = String::new();
     for _ in 0..1 + dice.below(6) {
-        let name = *dice.of_list(&NAMES);
+        let name = *dice.pick(&NAMES);
         let value = literal(dice, 3);
         text += &match dice.below(8) {
-            0 => format!("{name}.{} = {value};\n", dice.of_list(&NAMES)),
+            0 => format!("{name}.{} = {value};\n", dice.pick(&NAMES)),
             1 => format!("% {name}\n"),
             2 => format!("sys = ss({name}, B, C, {value});\n"),
             3 => format!("{name} = ...\n {value}\n"),
@@ -201,14 +204,15 @@ pub(super) fn literals(dice: &mut Dice) -> NamedBytes {
     )
 }
 
-fn literal(dice: &mut Dice, deeper: usize) -> String {
+/// Generates an expression; `depth` limits the nesting.
+fn literal(dice: &mut Dice, depth: usize) -> String {
     let count = dice.below(4);
-    match dice.below(if deeper == 0 { 3 } else { 10 }) {
+    match dice.below(if depth == 0 { 3 } else { 10 }) {
         0 | 1 => dice.number().to_string(),
-        2 => format!("'{}'", dice.of_list(&NAMES)),
+        2 => format!("'{}'", dice.pick(&NAMES)),
         3 => format!(
             "{}({}, {})",
-            dice.of_list(&["zeros", "ones", "eye", "repmat"]),
+            dice.pick(&["zeros", "ones", "eye", "repmat"]),
             dice.side(),
             dice.side()
         ),
@@ -216,19 +220,19 @@ fn literal(dice: &mut Dice, deeper: usize) -> String {
         5 => format!(
             "{{{}}}",
             (0..count)
-                .map(|_| literal(dice, deeper - 1))
+                .map(|_| literal(dice, depth - 1))
                 .collect::<Vec<_>>()
                 .join(", ")
         ),
         6 => format!(
             "struct('{}', {})",
-            dice.of_list(&NAMES),
-            literal(dice, deeper - 1)
+            dice.pick(&NAMES),
+            literal(dice, depth - 1)
         ),
         7 => format!(
             "-{}*{}'",
-            literal(dice, deeper - 1),
-            literal(dice, deeper - 1)
+            literal(dice, depth - 1),
+            literal(dice, depth - 1)
         ),
         _ => {
             let width = 1 + dice.below(3);
@@ -280,7 +284,7 @@ fn array(dice: &mut Dice) -> Vec<u8> {
 }
 
 /// Generates an element type; returns its description and size \[bytes\].
-fn element(dice: &mut Dice, deeper: usize) -> (String, usize) {
+fn element(dice: &mut Dice, depth: usize) -> (String, usize) {
     let plain = [
         ("'<f8'", 8),
         ("'>f4'", 4),
@@ -291,19 +295,19 @@ fn element(dice: &mut Dice, deeper: usize) -> (String, usize) {
         ("'|S3'", 3),
         ("'|O'", 8),
     ];
-    if deeper == 0 || !dice.once_in(3) {
-        let (kind, size) = *dice.of_list(&plain);
+    if depth == 0 || !dice.once_in(3) {
+        let (kind, size) = *dice.pick(&plain);
         return (kind.to_owned(), size);
     }
     let mut fields = String::new();
-    let mut whole = 0usize;
-    for at in 0..dice.below(3) {
-        let (kind, size) = element(dice, deeper - 1);
+    let mut total_size = 0usize;
+    for index in 0..dice.below(3) {
+        let (kind, size) = element(dice, depth - 1);
         let count = if dice.once_in(3) { dice.side() } else { 1 };
-        fields += &format!("('f{at}', {kind}, ({count},)), ");
-        whole = whole.saturating_add(size.saturating_mul(count));
+        fields += &format!("('f{index}', {kind}, ({count},)), ");
+        total_size = total_size.saturating_add(size.saturating_mul(count));
     }
-    (format!("[{fields}]"), whole)
+    (format!("[{fields}]"), total_size)
 }
 
 /// Generates an archive in which some entries point to the same bytes.
@@ -311,7 +315,7 @@ fn archive(dice: &mut Dice) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut directory = Vec::new();
     let mut entries = 0_u16;
-    for at in 0..1 + dice.below(3) {
+    for index in 0..1 + dice.below(3) {
         let (name, contents) = match dice.below(5) {
             0 => ("a.npy".to_owned(), array(dice)),
             1 => json(dice),
@@ -322,29 +326,31 @@ fn archive(dice: &mut Dice) -> Vec<u8> {
         let mut encoder = DeflateEncoder::new(Vec::new(), Compression::fast());
         encoder.write_all(&contents).unwrap();
         let packed = encoder.finish().unwrap();
-        let mut sum = flate2::Crc::new();
-        sum.update(&contents);
-        let sizes = [sum.sum(), packed.len() as u32, contents.len() as u32]
+        let mut checksum = flate2::Crc::new();
+        checksum.update(&contents);
+        let checksum_and_sizes = [checksum.sum(), packed.len() as u32, contents.len() as u32]
             .map(u32::to_le_bytes)
             .concat();
         let offset = bytes.len() as u32;
-        for time in 0..if dice.once_in(6) {
+        // Entries of the directory that point to these bytes.
+        let copies = if dice.once_in(6) {
             1 + dice.below(60)
         } else {
             1
-        } {
-            let name = format!("{at}-{time}-{name}");
+        };
+        for copy in 0..copies {
+            let name = format!("{index}-{copy}-{name}");
             let head = [
                 &[20, 0, 0, 0, 8, 0, 0, 0, 0, 0][..],
-                &sizes,
+                &checksum_and_sizes,
                 &[name.len() as u8, 0, 0, 0],
             ]
             .concat();
-            if time == 0 {
+            if copy == 0 {
                 bytes.extend([b"PK\x03\x04", head.as_slice(), name.as_bytes(), &packed].concat());
             }
-            let rest = [&[0; 10][..], &offset.to_le_bytes(), name.as_bytes()].concat();
-            directory.extend([b"PK\x01\x02\x14\x00", head.as_slice(), &rest].concat());
+            let directory_fields = [&[0; 10][..], &offset.to_le_bytes(), name.as_bytes()].concat();
+            directory.extend([b"PK\x01\x02\x14\x00", head.as_slice(), &directory_fields].concat());
             entries += 1;
         }
     }

@@ -1,4 +1,4 @@
-"""The module against the commands of the same program, and its promises to Python."""
+"""The module compared with the commands of the same program, and as a Python package."""
 
 import inspect
 import json
@@ -57,6 +57,7 @@ def with_delays() -> gdcm.Analysis:
 
 @lru_cache(maxsize=None)
 def records() -> List[Path]:
+    """Return the example records of condition 10 in which LON is swept."""
     folder = tempfile.mkdtemp()
     unittest.addModuleCleanup(lambda: subprocess.run(["rm", "-r", folder], check=True))
     found = gdcm.example_records(folder, condition=10)
@@ -81,6 +82,7 @@ class Agreement(Folder):
     """Numbers equal those of the command, to the last digit."""
 
     def corrections(self, *words: Any) -> dict:
+        """Return ``corrections.json`` of the command ``analyze``."""
         done = command("analyze", *words, "--out", self.folder / "results", "--force")
         self.assertEqual(done.returncode, 0, done.stderr)
         return json.loads((self.folder / "results" / "corrections.json").read_text())
@@ -99,16 +101,16 @@ class Agreement(Folder):
         self.assertEqual(list(fix[10].net_gain_interval["Q", "LON"]), row["interval"])
         lowest, highest = fix[10].net_gain_interval["Q", "LON"]
         self.assertTrue(lowest < fix[10].net_gain["Q", "LON"] < highest)
-        at = (fix.outputs.index("Q"), fix.inputs.index("LON"))
-        self.assertEqual(fix[10].net_gain.array[at], row["gain"])
-        self.assertEqual(tuple(fix[10].net_gain_interval.array[at]), tuple(row["interval"]))
-        own = fix[10].gains["Q"] * fix[10].gains["LON"]
-        self.assertAlmostEqual(own, row["gain"], places=14)
-        self.assertEqual(fix[10].G[at], fix[10].contents["G"][at[0]][at[1]])
-        tau = fix[10].contents["lead"]
+        place = (fix.outputs.index("Q"), fix.inputs.index("LON"))
+        self.assertEqual(fix[10].net_gain.array[place], row["gain"])
+        self.assertEqual(tuple(fix[10].net_gain_interval.array[place]), tuple(row["interval"]))
+        product = fix[10].gains["Q"] * fix[10].gains["LON"]
+        self.assertAlmostEqual(product, row["gain"], places=14)
+        self.assertEqual(fix[10].G[place], fix[10].contents["G"][place[0]][place[1]])
+        leads = fix[10].contents["lead"]
         self.assertEqual(
             fix[10].net_delay_s["Q", "LON"],
-            tau["outputs"]["Q"]["tau_s"] + tau["inputs"]["LON"]["tau_s"],
+            leads["outputs"]["Q"]["tau_s"] + leads["inputs"]["LON"]["tau_s"],
         )
 
     def test_settings_are_those_of_analyze(self) -> None:
@@ -156,14 +158,18 @@ class Agreement(Folder):
             schedule.at(80, mass_kg=term["middle"] + sign * term["half_range"]).gains["LON"]
             for sign in (-1.0, 1.0)
         )
+        # The logarithm of a gain is linear in the second variable, from -1 to 1 over its range.
         self.assertAlmostEqual(np.log(heavy / light), 2 * term["inputs"]["LON"], places=12)
         middle = schedule.at(80, mass_kg=term["middle"]).gains["LON"]
         self.assertEqual(schedule.at(80).gains["LON"], middle)
 
     def test_summary_and_cautions_are_those_of_analyze(self) -> None:
-        done = command("analyze", "--json", "--phase", "lead", "--reject-suggested", "--out", self.folder)
+        done = command(
+            *("analyze", "--json", "--phase", "lead", "--reject-suggested", "--out", self.folder)
+        )
         messages = json.loads(done.stdout)
         fix = with_leads()
+        # Only the beginning is compared: the command goes on to name its output files.
         self.assertTrue(messages["text"].startswith(fix.summary[:2000]))
         codes = [caution["code"] for caution in messages["cautions"]]
         self.assertEqual([caution.code for caution in fix.cautions], codes)
@@ -227,7 +233,8 @@ class Agreement(Folder):
             )
 
     def test_every_option_is_a_keyword(self) -> None:
-        other = {
+        # Parameters that are no options, and options that are no parameters.
+        exceptions = {
             "analyze": ({"data", "progress"}, {"--dataset", "--strict", "--reject-suggested"}),
             "identify": (
                 {"records", "progress"},
@@ -236,12 +243,13 @@ class Agreement(Folder):
             ),
             "assemble": ({"folders"}, {"--out", "--force"}),
         }
-        for name, (keywords, options) in other.items():
+        for name, (keywords, options) in exceptions.items():
             expected = set(_gdcm.options(name)) - options
             found = set(inspect.signature(getattr(gdcm, name)).parameters) - keywords
             self.assertEqual({"--" + word.replace("_", "-") for word in found}, expected, name)
-        study = set(_gdcm.options("analyze"))
-        expected = set(_gdcm.options("figure")) - study - {"--out", "--force"}
+        # A figure takes the options of its analysis from the analysis.
+        analysis = set(_gdcm.options("analyze"))
+        expected = set(_gdcm.options("figure")) - analysis - {"--out", "--force"}
         found = set(inspect.signature(gdcm.Analysis.figure).parameters) - {"self", "progress"}
         found = {"--" + word.replace("_", "-") for word in found}
         self.assertEqual(found - {"--response"} | {"--pair"}, expected)
@@ -250,19 +258,20 @@ class Agreement(Folder):
 class Script(Folder):
     """The script `gdcm` is the program, with its exit statuses."""
 
-    def test_exit_statuses(self) -> None:
+    def test_exit_status_is_0_for_success_2_for_wrong_input_1_for_no_result(self) -> None:
         version = command("--version")
         self.assertEqual((version.returncode, version.stdout.split()[0]), (0, "gdcm"))
         self.assertIn(gdcm.__version__, version.stdout)
         self.assertEqual(command("example", self.folder).returncode, 0)
         self.assertEqual(command("check", self.folder / "nothing.json").returncode, 2)
         self.assertEqual(command("analyze", "--no-such-option").returncode, 2)
+        # The files exist.
         self.assertEqual(command("example", self.folder).returncode, 2)
         contents = json.loads((self.folder / "example-dataset.json").read_text())
         for condition in contents["conditions"]:
             condition["identified_models"] = []
-        (self.folder / "without.json").write_text(json.dumps(contents))
-        done = command("analyze", self.folder / "without.json", "--out", self.folder)
+        (self.folder / "unidentified.json").write_text(json.dumps(contents))
+        done = command("analyze", self.folder / "unidentified.json", "--out", self.folder)
         self.assertEqual(done.returncode, 1, done.stderr)
 
     def test_without_a_display_the_window_ends_with_status_1(self) -> None:
@@ -274,12 +283,14 @@ class Script(Folder):
 
     def test_the_package_runs_as_a_program_and_as_a_function(self) -> None:
         done = subprocess.run(
-            [sys.executable, "-m", "gdcm", "check", "nothing.json"], capture_output=True, check=False
+            [sys.executable, "-m", "gdcm", "check", "nothing.json"],
+            capture_output=True,
+            check=False,
         )
         self.assertEqual(done.returncode, 2)
-        before = signal.getsignal(signal.SIGINT)
+        handler = signal.getsignal(signal.SIGINT)
         self.assertEqual(gdcm.main(["check", str(self.folder / "nothing.json")]), 2)
-        self.assertEqual(signal.getsignal(signal.SIGINT), before)
+        self.assertEqual(signal.getsignal(signal.SIGINT), handler)
 
     def test_ctrl_c_ends_a_command(self) -> None:
         words = ["gdcm", "identify", *map(str, records()), "--inputs", "LON", "--outputs", "Q"]
@@ -302,114 +313,118 @@ class Script(Folder):
 class Errors(Folder):
     """Errors are exceptions with the codes of the program."""
 
-    def code(self, call: Any) -> gdcm.Error:
+    def error_of(self, call: Any) -> gdcm.Error:
+        """Return the error that a call raises."""
         with self.assertRaises(gdcm.Error) as raised:
             call()
         return raised.exception
 
-    def test_files(self) -> None:
+    def test_missing_and_damaged_files(self) -> None:
         missing = self.folder / "nothing.json"
-        error = self.code(lambda: gdcm.load(missing))
+        error = self.error_of(lambda: gdcm.load(missing))
         self.assertEqual((error.code, error.status), ("missing-file", 2))
         self.assertEqual(error.fields["path"], str(missing))
         (self.folder / "damaged.json").write_text('{"format": "gdcm-dataset",\n "version": 1,')
-        error = self.code(lambda: gdcm.load(self.folder / "damaged.json"))
+        error = self.error_of(lambda: gdcm.load(self.folder / "damaged.json"))
         self.assertEqual((error.code, error.fields["line"]), ("json-cut-off", 2))
-        error = self.code(lambda: gdcm.identify(missing, inputs="LON", outputs="Q", band=(1, 2)))
+        error = self.error_of(
+            lambda: gdcm.identify(missing, inputs="LON", outputs="Q", band=(1, 2))
+        )
         self.assertEqual(error.code, "missing-file")
         empty = self.folder / "empty"
         empty.mkdir()
-        error = self.code(lambda: gdcm.assemble(empty))
+        error = self.error_of(lambda: gdcm.assemble(empty))
         self.assertEqual(error.code, "incomplete-rules")
         self.assertTrue(error.errors)
 
     def test_wrong_settings(self) -> None:
-        error = self.code(lambda: gdcm.analyze(example(), phase="sideways"))
+        error = self.error_of(lambda: gdcm.analyze(example(), phase="sideways"))
         self.assertEqual(error.code, "wrong-option")
         self.assertEqual(error.fields["option"], "--phase")
-        error = self.code(lambda: gdcm.analyze(example(), reject=[(3, "nobody")]))
+        error = self.error_of(lambda: gdcm.analyze(example(), reject=[(3, "nobody")]))
         self.assertEqual(error.code, "unknown-model")
-        error = self.code(lambda: gdcm.analyze(example(), on=[("Q", "STICK")]))
+        error = self.error_of(lambda: gdcm.analyze(example(), on=[("Q", "STICK")]))
         self.assertEqual(error.code, "unknown-response")
-        error = self.code(lambda: gdcm.analyze(example(), quantile=2.0))
+        error = self.error_of(lambda: gdcm.analyze(example(), quantile=2.0))
         self.assertEqual(error.fields["option"], "--quantile")
         with self.assertRaises(TypeError):
             gdcm.analyze(example(), alpha=object())  # type: ignore[arg-type]
 
-    def test_results_that_there_are_not(self) -> None:
+    def test_missing_results(self) -> None:
         fix = with_delays()
-        error = self.code(lambda: fix.figure("bode", response=("Q", "LON")))
+        error = self.error_of(lambda: fix.figure("bode", response=("Q", "LON")))
         self.assertEqual(error.code, "missing-condition")
-        error = self.code(lambda: fix[10].response(OMEGA, model="nobody"))
+        error = self.error_of(lambda: fix[10].response(OMEGA, model="nobody"))
         self.assertEqual(error.code, "unknown-model")
-        error = self.code(lambda: fix[10].response([0.0, 1.0]))
+        error = self.error_of(lambda: fix[10].response([0.0, 1.0]))
         self.assertEqual(error.code, "wrong-frequencies")
-        error = self.code(lambda: fix[10].state_space(pade=99))
+        error = self.error_of(lambda: fix[10].state_space(pade=99))
         self.assertEqual(error.fields["option"], "--pade")
         with self.assertRaises(KeyError):
             fix[99]
         contents = json.loads(json.dumps(example().contents))
         for condition in contents["conditions"]:
             condition["identified_models"] = []
-        alone = gdcm.Dataset.from_dict(contents)
-        error = self.code(lambda: gdcm.analyze(alone))
+        unidentified = gdcm.Dataset.from_dict(contents)
+        error = self.error_of(lambda: gdcm.analyze(unidentified))
         self.assertEqual((error.code, error.status), ("no-result", 1))
         contents = json.loads(json.dumps(example().contents))
         contents["conditions"][0]["identified_models"] = []
         fix = gdcm.analyze(gdcm.Dataset.from_dict(contents))
         first = contents["conditions"][0]["id"]
         self.assertEqual([(f.code, f.conditions) for f in fix.failed], [("no-reference", (first,))])
-        self.assertEqual(self.code(lambda: fix[first]).code, "no-reference")
+        self.assertEqual(self.error_of(lambda: fix[first]).code, "no-reference")
 
-    def test_records(self) -> None:
-        error = self.code(
+    def test_unclear_records_and_wrong_band(self) -> None:
+        error = self.error_of(
             lambda: gdcm.identify(records(), inputs="STICK", outputs="Q", band=(0.5, 12))
         )
         self.assertEqual((error.code, error.errors[0].code), ("unclear-records", "no-column"))
-        error = self.code(
+        error = self.error_of(
             lambda: gdcm.identify(records(), inputs="LON", outputs="Q", band=(12, 0.5))
         )
         self.assertEqual(error.fields["option"], "--band")
 
     def test_an_error_can_be_sent_to_another_process(self) -> None:
-        error = self.code(lambda: gdcm.load(self.folder / "nothing.json"))
-        again = pickle.loads(pickle.dumps(error))
-        self.assertEqual((again.code, str(again)), (error.code, str(error)))
-        self.assertEqual(again.fields, error.fields)
+        error = self.error_of(lambda: gdcm.load(self.folder / "nothing.json"))
+        restored = pickle.loads(pickle.dumps(error))
+        self.assertEqual((restored.code, str(restored)), (error.code, str(error)))
+        self.assertEqual(restored.fields, error.fields)
 
 
-class Work(unittest.TestCase):
+class LongWork(unittest.TestCase):
     """Long work reports progress, can be stopped, and releases the interpreter lock."""
 
     def test_progress_is_reported_in_the_calling_thread(self) -> None:
-        heard = []
+        reports = []
 
-        def hear(fraction: float, step: str) -> None:
-            heard.append((fraction, step, threading.current_thread()))
+        def report(fraction: float, step: str) -> None:
+            reports.append((fraction, step, threading.current_thread()))
 
-        gdcm.identify(records(), inputs="LON", outputs="Q", band=(0.5, 12), progress=hear)
-        fractions = [fraction for fraction, _, _ in heard]
+        gdcm.identify(records(), inputs="LON", outputs="Q", band=(0.5, 12), progress=report)
+        fractions = [fraction for fraction, _, _ in reports]
         # Short work reports only its end: how often it reports depends on the machine.
         self.assertTrue(all(0.0 <= fraction <= 1.0 for fraction in fractions))
         self.assertEqual(fractions[-1], 1.0)
-        self.assertTrue(all(isinstance(step, str) for _, step, _ in heard))
-        self.assertEqual({thread for _, _, thread in heard}, {threading.current_thread()})
+        self.assertTrue(all(isinstance(step, str) for _, step, _ in reports))
+        self.assertEqual({thread for _, _, thread in reports}, {threading.current_thread()})
 
-    def test_an_exception_of_the_callback_stops_the_work(self) -> None:
-        class Enough(Exception):
+    def test_an_exception_in_the_callback_stops_the_work(self) -> None:
+        class Stop(Exception):
             pass
 
-        def refuse(fraction: float, step: str) -> None:
-            raise Enough
+        def stop(fraction: float, step: str) -> None:
+            raise Stop
 
         begin = time.monotonic()
-        with self.assertRaises(Enough):
-            gdcm.identify(records(), inputs="LON", outputs="Q", band=(0.5, 12), progress=refuse)
+        with self.assertRaises(Stop):
+            gdcm.identify(records(), inputs="LON", outputs="Q", band=(0.5, 12), progress=stop)
         self.assertLess(time.monotonic() - begin, 30.0)
+        # The module still works: 11 conditions.
         self.assertEqual(len(gdcm.analyze(example(), points=20)), 11)
 
     def test_ctrl_c_stops_the_work(self) -> None:
-        # A process that a shell starts in the background inherits that Ctrl+C is ignored.
+        # A process that a shell starts in the background ignores Ctrl+C unless a handler is set.
         handler = signal.signal(signal.SIGINT, signal.default_int_handler)
         self.addCleanup(signal.signal, signal.SIGINT, handler)
 
@@ -464,9 +479,9 @@ class Work(unittest.TestCase):
 class Arrays(Folder):
     """Models as arrays, in and out."""
 
-    def test_a_dataset_goes_to_arrays_and_back(self) -> None:
+    def test_a_dataset_survives_its_arrays(self) -> None:
         data = example()
-        again = gdcm.Dataset(
+        rebuilt = gdcm.Dataset(
             list(data.conditions.values()),
             inputs=data.inputs,
             outputs=data.outputs,
@@ -475,18 +490,19 @@ class Arrays(Folder):
             name=data.name,
         )
         for id_, condition in data.conditions.items():
-            other = again.conditions[id_]
-            self.assertEqual(other.nominal.A.tolist(), condition.nominal.A.tolist())
-            self.assertEqual(list(other.perturbed), list(condition.perturbed))
-            self.assertEqual(other.perturbations, condition.perturbations)
-            self.assertEqual(list(other.identified), list(condition.identified))
-        fix = gdcm.analyze(again, phase="lead", reject="suggested")
-        found = without_source(fix.corrections)
-        expected = without_source(with_leads().corrections)
-        self.assertEqual(found, expected)
+            found = rebuilt.conditions[id_]
+            self.assertEqual(found.nominal.A.tolist(), condition.nominal.A.tolist())
+            self.assertEqual(list(found.perturbed), list(condition.perturbed))
+            self.assertEqual(found.perturbations, condition.perturbations)
+            self.assertEqual(list(found.identified), list(condition.identified))
+        fix = gdcm.analyze(rebuilt, phase="lead", reject="suggested")
+        self.assertEqual(
+            without_source(fix.corrections), without_source(with_leads().corrections)
+        )
 
-    def one_axis(self, nominal: Any, flight: Any, **more: Any) -> gdcm.Dataset:
-        condition = gdcm.Condition(1, 60.0, nominal, identified={"flight": flight}, **more)
+    def one_axis(self, nominal: Any, flight: Any) -> gdcm.Dataset:
+        """Return a dataset with one condition, one input and one output."""
+        condition = gdcm.Condition(1, 60.0, nominal, identified={"flight": flight})
         return gdcm.Dataset(
             [condition],
             inputs={"LON": "%"},
@@ -499,6 +515,7 @@ class Arrays(Folder):
         import control
         import scipy.signal
 
+        # First-order lags with the gains 2.0 and 2.4: the correction is a gain of 1.2.
         matrices = ([[-1.0]], [[1.0]], [[2.0]], [[0.0]])
         flight = ([[-1.0]], [[1.0]], [[2.4]], [[0.0]])
         for nominal in (
@@ -526,13 +543,13 @@ class Arrays(Folder):
             window_s=30.0,
         )
         data = self.one_axis(([[-1.0]], [[1.0]], [[2.0]], [[0.0]]), measured)
-        again = data.conditions[1].identified["flight"]
-        np.testing.assert_array_equal(again.H, measured.H)
-        np.testing.assert_array_equal(again.coherence, measured.coherence)
-        self.assertEqual((again.averages, again.window_s), (20.0, 30.0))
+        found = data.conditions[1].identified["flight"]
+        np.testing.assert_array_equal(found.H, measured.H)
+        np.testing.assert_array_equal(found.coherence, measured.coherence)
+        self.assertEqual((found.averages, found.window_s), (20.0, 30.0))
         self.assertEqual(gdcm.analyze(data).settings["coherence_threshold"], 0.6)
 
-    def test_arrays_that_are_no_dataset_are_refused_with_their_place(self) -> None:
+    def test_wrong_arrays_are_refused_with_their_place(self) -> None:
         good = ([[-1.0]], [[1.0]], [[2.0]], [[0.0]])
         for wrong, code in (
             (([[-1.0]], [[1.0, 2.0]], [[2.0]], [[0.0]]), "matrix-shape"),
@@ -549,13 +566,11 @@ class Arrays(Folder):
         fix = with_delays()
         nominal = example().conditions[4].nominal
         identity = np.eye(nominal.order)
-        plain = np.stack(
-            [
-                nominal.C @ np.linalg.solve(1j * omega * identity - nominal.A, nominal.B) + nominal.D
-                for omega in OMEGA
-            ],
-            axis=-1,
-        )
+        responses = []
+        for omega in OMEGA:
+            states = np.linalg.solve(1j * omega * identity - nominal.A, nominal.B)
+            responses.append(nominal.C @ states + nominal.D)
+        plain = np.stack(responses, axis=-1)
         np.testing.assert_allclose(example().response(4, OMEGA), plain, rtol=1e-8, atol=1e-12)
         gains = fix[4].net_gain.array[:, :, np.newaxis]
         delays_s = fix[4].net_delay_s.array[:, :, np.newaxis]
@@ -575,7 +590,7 @@ class Arrays(Folder):
             rtol=1e-8,
         )
 
-    def test_leads_are_in_the_response(self) -> None:
+    def test_the_response_includes_the_leads(self) -> None:
         fix = with_leads()
         leads = fix[10].leads
         assert leads is not None
@@ -586,6 +601,8 @@ class Arrays(Folder):
             # A critically damped second-order lead over such a lag, with unit static gain (M15.3).
             zero, lag = lead["zero_rad_s"], lead["lag_rad_s"]
             expected *= ((1j * OMEGA / zero + 1.0) / (1j * OMEGA / lag + 1.0)) ** 2
+        # Apart from the leads, less than 0.15 rad of phase is left; with them, the phase at the
+        # upper end of the band is advanced by more than 0.3 rad.
         phase = np.angle(ratio / expected)
         self.assertLess(np.abs(phase).max(), 0.15)
         self.assertGreater(np.angle(ratio[-1]), 0.3)
@@ -626,21 +643,21 @@ class Arrays(Folder):
         fix.save(study)
         self.assertTrue((self.folder / "axis.dataset.json.gz").exists())
         self.assertEqual(command("check", study, "--strict").returncode, 0)
-        again = gdcm.analyze(gdcm.load(study, strict=True))
-        self.assertEqual(again.settings["alpha_gain"], 0.5)
-        self.assertEqual(without_source(again.corrections), without_source(fix.corrections))
+        loaded = gdcm.analyze(gdcm.load(study, strict=True))
+        self.assertEqual(loaded.settings["alpha_gain"], 0.5)
+        self.assertEqual(without_source(loaded.corrections), without_source(fix.corrections))
 
     def test_a_study_of_the_example_keeps_its_decisions(self) -> None:
         study = self.folder / "aw.gdcm-study.json"
         with_leads().save(study)
         self.assertEqual(os.listdir(self.folder), [study.name])
-        again = gdcm.analyze(gdcm.load(study))
-        self.assertEqual(again.corrections, with_leads().corrections)
-        moved = self.folder / "moved.json"
-        example().save(moved)
-        self.assertEqual(gdcm.load(moved).contents, example().contents)
+        loaded = gdcm.analyze(gdcm.load(study))
+        self.assertEqual(loaded.corrections, with_leads().corrections)
+        dataset = self.folder / "dataset.json"
+        example().save(dataset)
+        self.assertEqual(gdcm.load(dataset).contents, example().contents)
         with self.assertRaises(gdcm.Error) as raised:
-            example().save(moved)
+            example().save(dataset)
         self.assertEqual(raised.exception.code, "output-exists")
 
     def test_identified_models_go_into_a_dataset(self) -> None:
@@ -656,7 +673,7 @@ class Arrays(Folder):
             found.put_into(example(), 10)
         self.assertEqual(raised.exception.code, "other-channels")
 
-    def test_assembled_models_are_those_of_the_files(self) -> None:
+    def test_rules_for_files_are_assembled_to_a_dataset(self) -> None:
         done = command("example", self.folder)
         self.assertEqual(done.returncode, 0)
         real = self.folder / "real"
@@ -672,10 +689,11 @@ class Frames(unittest.TestCase):
 
     def test_frames_have_the_values_of_the_results(self) -> None:
         fix = with_leads()
+        # 11 conditions; 6 outputs and 4 inputs.
         channels = fix.to_frame()
         self.assertEqual(len(channels), 11 * 10)
-        one = channels[(channels["condition"] == 10) & (channels["channel"] == "LON")]
-        self.assertEqual(one["gain"].item(), fix[10].gains["LON"])
+        row = channels[(channels["condition"] == 10) & (channels["channel"] == "LON")]
+        self.assertEqual(row["gain"].item(), fix[10].gains["LON"])
         responses = fix.to_frame("responses")
         self.assertEqual(len(responses), 11 * 24)
         schedule = fix.schedule.to_frame()

@@ -14,19 +14,20 @@ CODE = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 class Page(unittest.TestCase):
     def test_the_code_of_the_page_runs_in_order(self) -> None:
         text = PAGE.read_text(encoding="utf-8")
-        before = os.getcwd()
+        # The code writes files.
+        original_folder = os.getcwd()
         names = {"__name__": "page"}
         with tempfile.TemporaryDirectory() as folder:
             os.chdir(folder)
             try:
                 for block in CODE.finditer(text):
                     line = text.count("\n", 0, block.start(1))
-                    # The lines of a traceback are those of the page.
+                    # Empty lines before the code give a traceback the line numbers of the page.
                     code = compile("\n" * line + block.group(1), str(PAGE), "exec")
                     exec(code, names)
             finally:
-                os.chdir(before)
-        self.assertGreater(len(CODE.findall(text)), 5)
+                os.chdir(original_folder)
+        self.assertGreater(len(CODE.findall(text)), 5, "the blocks of the page were not found")
 
 
 if __name__ == "__main__":

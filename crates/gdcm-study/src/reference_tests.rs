@@ -15,7 +15,7 @@ use gdcm_model::dataset::{
 
 /// Returns the reference dataset, for which the expected values are stored.
 pub(crate) fn reference_dataset() -> Dataset {
-    dataset_of(include_bytes!(
+    unpacked_dataset(include_bytes!(
         "../../../tests/data/reference/example-dataset.json.gz"
     ))
 }
@@ -64,11 +64,11 @@ fn model(value: &Value, origin: Origin) -> Model {
 }
 
 fn condition(value: &Value) -> Condition {
-    let physics = list(&value["physics_models"]).iter().map(|of| {
+    let physics = list(&value["physics_models"]).iter().map(|entry| {
         let perturbation = None;
-        let is_nominal = of["role"].as_str() == Some("nominal");
+        let is_nominal = entry["role"].as_str() == Some("nominal");
         model(
-            of,
+            entry,
             if is_nominal {
                 Origin::Nominal { perturbation }
             } else {
@@ -76,10 +76,9 @@ fn condition(value: &Value) -> Condition {
             },
         )
     });
-    let identified = list(&value["identified_models"]).iter();
-    let identified = identified.map(|of| {
+    let identified = list(&value["identified_models"]).iter().map(|entry| {
         model(
-            of,
+            entry,
             Origin::Identified {
                 method: None,
                 order: None,
@@ -93,8 +92,8 @@ fn condition(value: &Value) -> Condition {
     Condition::new(flight_state, physics.collect(), identified.collect()).unwrap()
 }
 
-/// Returns a dataset from its compressed file.
-pub(crate) fn dataset_of(packed: &[u8]) -> Dataset {
+/// Returns a dataset from its file, JSON compressed with gzip.
+pub(crate) fn unpacked_dataset(packed: &[u8]) -> Dataset {
     let mut unpacked = String::new();
     flate2::read::GzDecoder::new(packed)
         .read_to_string(&mut unpacked)
@@ -103,17 +102,16 @@ pub(crate) fn dataset_of(packed: &[u8]) -> Dataset {
     let channels = |side: &str| -> Vec<Channel> {
         list(&file[side])
             .iter()
-            .map(|of| Channel::new(text(&of["name"]), text(&of["unit"])))
+            .map(|channel| Channel::new(text(&channel["name"]), text(&channel["unit"])))
             .collect()
     };
     let inputs = channels("inputs");
     let outputs = channels("outputs");
     let is_on_axis = |pair: Pair| {
-        let named = |on_axis: &&Value| {
+        list(&file["on_axis"]).iter().any(|on_axis| {
             on_axis[0] == outputs[pair.output].name.as_str()
                 && on_axis[1] == inputs[pair.input].name.as_str()
-        };
-        list(&file["on_axis"]).iter().any(|on_axis| named(&on_axis))
+        })
     };
     let header = DatasetHeader {
         name: "reference".into(),

@@ -28,7 +28,7 @@ static ASSESSED: LazyLock<Arc<CouplingsAssessment>> = LazyLock::new(|| {
 });
 
 #[test]
-fn the_diagnosis_comes_first() {
+fn the_diagnosis_precedes_the_verdict_on_costs() {
     let remarks = coupling_remarks(&ASSESSED, &EXAMPLE.study.dataset);
     let swashplate = remarks.iter().position(|remark| {
         matches!(remark, CouplingRemark::Mixing(share)
@@ -39,6 +39,7 @@ fn the_diagnosis_comes_first() {
     });
     let swashplate = swashplate.unwrap();
     assert!(swashplate < verdict.unwrap(), "{remarks:#?}");
+    // Channel 1 is LAT.
     let words = coupling_remark_text(&remarks[swashplate], &EXAMPLE.study.dataset);
     assert!(words.starts_with("LAT receives "), "{words}");
     assert!(
@@ -52,7 +53,7 @@ fn the_diagnosis_comes_first() {
 }
 
 #[test]
-fn an_unstable_pole_in_the_band_is_told_before_faster_ones_beyond_it() {
+fn an_unstable_pole_in_the_band_precedes_a_faster_one_above_it() {
     let unstable = |model: &str, real: f64, is_in_band: bool| UnstablePole {
         condition: ConditionId(4),
         model: model.to_owned(),
@@ -62,6 +63,7 @@ fn an_unstable_pole_in_the_band_is_told_before_faster_ones_beyond_it() {
     };
     let mut assessed = (**ASSESSED).clone();
     assessed.unstable = vec![unstable("fast", 90.0, false), unstable("slow", 2.0, true)];
+    // One of the eleven fits without a condition failed.
     assessed.left_out_fits.pop();
     let cautions = coupling_cautions(&assessed);
     let poles = cautions
@@ -82,8 +84,8 @@ fn an_unstable_pole_in_the_band_is_told_before_faster_ones_beyond_it() {
 }
 
 #[test]
-fn without_leads_a_feedback_is_said_to_take_their_place() {
-    assert_eq!(ASSESSED.unused_lead_offers, 0, "leads are given");
+fn feedback_without_leads_has_a_caution_that_it_replaces_them() {
+    assert_eq!(ASSESSED.unused_lead_offers, 0, "leads are on");
     let has_caution = |assessment: &CouplingsAssessment| {
         coupling_cautions(assessment)
             .iter()
@@ -94,5 +96,5 @@ fn without_leads_a_feedback_is_said_to_take_their_place() {
     assessed.unused_lead_offers = 2;
     assert!(has_caution(&assessed));
     assessed.couplings = CouplingCorrection::Mixing;
-    assert!(!has_caution(&assessed), "a mixing gives no lead");
+    assert!(!has_caution(&assessed), "mixing adds no lead");
 }

@@ -1,4 +1,4 @@
-//! Tests of sentences and tables about the reference dataset, analysed with leads.
+//! The example of the tests in this crate: the reference dataset, analysed with leads.
 
 use std::sync::{Arc, LazyLock};
 

@@ -12,7 +12,8 @@ use super::mode_comparison::{ModeValues, ModelModes, compare_modes};
 use super::mode_tolerance::{ModeTolerance, ModeToleranceError};
 use super::{ModeName, ModeToleranceTable, ModeVerdict, NamedBy};
 
-fn pair(re: f64, im: f64) -> Vec<Mode> {
+/// Modes of a model with the poles `re ± j im`: a single oscillatory mode.
+fn oscillatory_modes(re: f64, im: f64) -> Vec<Mode> {
     uncontrolled_modes(dmatrix![re, im; -im, re])
 }
 
@@ -41,8 +42,8 @@ fn unnamed(modes: &[Mode]) -> ModelModes<'_> {
 
 /// Verdict on a Dutch roll with pole `re + j im`, compared with a flown Dutch roll at -0.4 + 2j.
 fn verdict(re: f64, im: f64, estimates: &[PoleEstimate]) -> ModeVerdict {
-    let flown = pair(-0.4, 2.0);
-    let model = pair(re, im);
+    let flown = oscillatory_modes(-0.4, 2.0);
+    let model = oscillatory_modes(re, im);
     let rows = compare_modes(
         unnamed(&flown),
         &[unnamed(&model)],
@@ -67,9 +68,11 @@ fn estimate(sd_re: f64, sd_im: f64) -> PoleEstimate {
     }
 }
 
+// The pole s = -0.4 + 2j oscillates at |Im s| = 2 rad/s: its period is 2 pi / 2, the time to half
+// amplitude ln 2 / 0.4, the damping ratio 0.4 / |s|. A growing mode has a negative time to half.
 #[test]
 fn period_time_to_half_and_damping_are_those_of_the_pole() {
-    let values = ModeValues::new(&pair(-0.4, 2.0)[0]);
+    let values = ModeValues::new(&oscillatory_modes(-0.4, 2.0)[0]);
     assert!((values.period_s.unwrap() - TAU / 2.0).abs() < 1e-14);
     assert!((values.time_to_half_s.unwrap() - LN_2 / 0.4).abs() < 1e-14);
     assert!((values.damping_ratio.unwrap() - 0.4 / 4.16_f64.sqrt()).abs() < 1e-14);
@@ -80,19 +83,22 @@ fn period_time_to_half_and_damping_are_those_of_the_pole() {
 }
 
 #[test]
-fn a_mode_is_within_if_its_period_and_its_amplitude_or_damping_are() {
+fn a_mode_is_within_if_its_period_and_either_time_to_half_or_damping_are() {
+    // Default tolerances for the Dutch roll: the wider of 10 % and 0.5 s on the period, 10 % on the
+    // time to half amplitude, 0.02 on the damping ratio. The flown period is 3.14 s.
     assert_eq!(verdict(-0.4, 2.0, &[]), ModeVerdict::Within);
-    // A period of 3.14 s + 0.5 s corresponds to 1.7255 rad/s. The damping ratio differs by 0.03,
-    // the time to half does not differ.
+    // A period of 3.14 s + 0.5 s corresponds to 1.7254 rad/s. The damping ratio differs by 0.03,
+    // but the time to half is the same, which is sufficient.
     assert_eq!(verdict(-0.4, 1.73, &[]), ModeVerdict::Within);
     assert_eq!(verdict(-0.4, 1.72, &[]), ModeVerdict::Outside);
-    // The time to half differs by 15 %, the damping ratio by 0.0195 or 0.029.
+    // The time to half is outside, by 11 % and by 18 %; the damping ratio differs by 0.018, which
+    // is within, and by 0.029, which is not.
     assert_eq!(verdict(-0.36, 1.99, &[]), ModeVerdict::Within);
     assert_eq!(verdict(-0.34, 2.0, &[]), ModeVerdict::Outside);
     assert_eq!(
         verdict(0.4, 2.0, &[]),
         ModeVerdict::Outside,
-        "as fast, but growing"
+        "a growing mode at the flown frequency"
     );
 }
 
@@ -102,29 +108,35 @@ fn a_mode_less_certain_than_the_tolerance_is_not_determined() {
         verdict(-0.4, 2.0, &[estimate(0.01, 0.01)]),
         ModeVerdict::Within
     );
-    // The standard deviations are 0.31 s for the period (tolerance 0.5 s), 25 % for the time to
-    // half amplitude, and 0.045 for the damping ratio.
+    // The standard deviations are 0.31 s for the period (tolerance 0.5 s), but 25 % for the time to
+    // half amplitude (tolerance 10 %) and 0.051 for the damping ratio (tolerance 0.02).
     assert_eq!(
         verdict(-0.4, 2.0, &[estimate(0.1, 0.2)]),
         ModeVerdict::NotDetermined
     );
+    // The standard deviation of the period is 0.63 s.
     assert_eq!(
         verdict(-0.4, 2.0, &[estimate(0.01, 0.4)]),
         ModeVerdict::NotDetermined
     );
-    let by_records = PoleEstimate {
+    // The records do not determine the pole, whatever its standard deviations.
+    let undetermined = PoleEstimate {
         determined: false,
         ..estimate(0.0, 0.0)
     };
     assert_eq!(
-        verdict(-0.4, 2.0, &[by_records]),
+        verdict(-0.4, 2.0, &[undetermined]),
         ModeVerdict::NotDetermined
     );
-    let of_another = PoleEstimate {
+    let undetermined_other_pole = PoleEstimate {
         pole: Complex::new(-0.4, 3.0),
-        ..by_records
+        ..undetermined
     };
-    assert_eq!(verdict(-0.4, 2.0, &[of_another]), ModeVerdict::Within);
+    assert_eq!(
+        verdict(-0.4, 2.0, &[undetermined_other_pole]),
+        ModeVerdict::Within,
+        "an estimate of another pole does not matter"
+    );
 }
 
 fn all_values(values: ModeValues) -> [f64; 3] {
@@ -133,17 +145,19 @@ fn all_values(values: ModeValues) -> [f64; 3] {
 
 /// Half the changes of the mode's values between poles moved by plus and by minus (`re`, `im`).
 fn half_changes(re: f64, im: f64) -> [f64; 3] {
-    let high = all_values(ModeValues::new(&pair(-0.4 + re, 2.0 + im)[0]));
-    let low = all_values(ModeValues::new(&pair(-0.4 - re, 2.0 - im)[0]));
+    let high = all_values(ModeValues::new(&oscillatory_modes(-0.4 + re, 2.0 + im)[0]));
+    let low = all_values(ModeValues::new(&oscillatory_modes(-0.4 - re, 2.0 - im)[0]));
     std::array::from_fn(|value| 0.5 * (high[value] - low[value]))
 }
 
 #[test]
-fn deviations_agree_with_moving_the_pole() {
+fn standard_deviations_agree_with_difference_quotients() {
     let sd_re = 1e-4;
     let sd_im = 2e-4;
-    let deviation = ModeValues::deviation(&pair(-0.4, 2.0)[0], &estimate(sd_re, sd_im));
+    let deviation =
+        ModeValues::deviation(&oscillatory_modes(-0.4, 2.0)[0], &estimate(sd_re, sd_im));
     let deviation = all_values(deviation);
+    // The real and the imaginary part of the pole are uncorrelated: their effects add in squares.
     let by_re = half_changes(sd_re, 0.0);
     let by_im = half_changes(0.0, sd_im);
     for (deviation, (by_re, by_im)) in deviation.iter().zip(by_re.iter().zip(by_im)) {
@@ -153,7 +167,9 @@ fn deviations_agree_with_moving_the_pole() {
 }
 
 #[test]
-fn a_mode_below_the_band_is_not_determined_and_without_a_tolerance_has_no_verdict() {
+fn a_mode_below_the_band_is_not_determined_and_a_mode_without_tolerance_has_no_verdict() {
+    // A phugoid at 0.2 rad/s, below the band from 0.5 rad/s, and a roll mode at 3 rad/s, which no
+    // row of the default table covers.
     let flown = uncontrolled_modes(dmatrix![-0.02, 0.2, 0.0; -0.2, -0.02, 0.0; 0.0, 0.0, -3.0]);
     let rows = compare_modes(
         unnamed(&flown),
@@ -180,7 +196,7 @@ fn a_mode_below_the_band_is_not_determined_and_without_a_tolerance_has_no_verdic
 #[test]
 fn rows_are_named_by_the_physics_model_and_unpaired_modes_are_marked() {
     let flown = uncontrolled_modes(dmatrix![-0.4, 2.0, 0.0; -2.0, -0.4, 0.0; 0.0, 0.0, -3.0]);
-    let physics = pair(-0.5, 2.1);
+    let physics = oscillatory_modes(-0.5, 2.1);
     let states = ["w".to_owned(), "q".to_owned()];
     let physics = ModelModes {
         modes: &physics,
@@ -220,10 +236,10 @@ fn rows_are_named_by_the_physics_model_and_unpaired_modes_are_marked() {
 
 #[test]
 fn a_mode_is_named_once_and_a_fast_flown_pole_is_no_phugoid() {
-    // An overdamped flown pole, and a physics phugoid with two real poles: an earlier version named
-    // two rows phugoid.
+    // Two real flown poles beside an oscillatory phugoid of the physics model: an earlier version
+    // named both rows phugoid.
     let flown = uncontrolled_modes(dmatrix![-0.26, 0.0; 0.0, -2.8]);
-    let physics = pair(-0.26, 0.1);
+    let physics = oscillatory_modes(-0.26, 0.1);
     let states = ["u".to_owned(), "theta".to_owned()];
     let physics = ModelModes {
         modes: &physics,
@@ -248,7 +264,8 @@ fn a_mode_is_named_once_and_a_fast_flown_pole_is_no_phugoid() {
         ),
     ];
     assert_eq!(found, expected);
-    // Two flown poles whose partners have the same name: the nearer pole keeps it.
+    // Two flown poles whose partners in the physics model have the same name: the flown pole that
+    // is nearer to its partner keeps it.
     let split = uncontrolled_modes(dmatrix![-0.26, 0.0; 0.0, -0.6]);
     let physics = ModelModes {
         modes: &split,
@@ -264,7 +281,7 @@ fn a_mode_is_named_once_and_a_fast_flown_pole_is_no_phugoid() {
 }
 
 #[test]
-fn a_table_of_modes_comes_back_as_it_was_and_a_wrong_row_is_refused() {
+fn a_mode_tolerance_table_survives_json_and_a_tolerance_of_zero_is_refused() {
     let text = serde_json::to_string(&ModeToleranceTable::default()).unwrap();
     assert_eq!(
         serde_json::from_str::<ModeToleranceTable>(&text).unwrap(),

@@ -27,7 +27,7 @@ fn tolerance(absolute: f64, relative: f64) -> ChannelTolerance {
     }
 }
 
-fn check_of(
+fn check_samples(
     flown: &[f64],
     simulated: &[f64],
     tolerance: &ChannelTolerance,
@@ -42,7 +42,7 @@ fn check_of(
     ToleranceCheck::new(&window, tolerance)
 }
 
-/// The synthetic record of the reference results.
+/// The record in the reference results (`tests/data/reference/requirements.json`, "tolerance").
 struct SyntheticRecord {
     flown: Vec<f64>,
     simulated: Vec<f64>,
@@ -71,11 +71,11 @@ fn outputs() -> Vec<Channel> {
 }
 
 #[test]
-fn shares_and_excesses_are_the_known_ones() {
+fn shares_and_excesses_match_the_reference_results() {
     let SyntheticRecord { flown, simulated } = synthetic_record();
     let answers = answers();
     for case in answers["tolerance"]["cases"].as_array().unwrap() {
-        let check = check_of(
+        let check = check_samples(
             &flown,
             &simulated,
             &tolerance(number(case, "absolute"), 0.1),
@@ -96,10 +96,12 @@ fn shares_and_excesses_are_the_known_ones() {
 }
 
 #[test]
-fn the_parts_outside_hold_the_samples_that_are_outside() {
+fn intervals_outside_the_tolerance_contain_exactly_the_samples_outside() {
+    // Nothing moves in flight, so that the tolerance is 1 throughout: samples 1 and 2, 4, and 7 are
+    // outside, the last by 5 - 1. A value on the limit is inside.
     let flown = [0.0; 8];
     let simulated = [0.0, 2.0, 3.0, 0.0, -2.0, 1.0, 0.0, 5.0];
-    let check = check_of(&flown, &simulated, &tolerance(1.0, 0.1)).unwrap();
+    let check = check_samples(&flown, &simulated, &tolerance(1.0, 0.1)).unwrap();
     assert_eq!(check.outside(), [[0.02, 0.04], [0.08, 0.08], [0.14, 0.14]]);
     assert_eq!(
         (
@@ -117,12 +119,13 @@ fn the_peak_error_is_relative_to_the_tolerance_of_its_own_sample() {
     // sample; relative to the tolerance it is 3 of 2, at the second.
     let flown = [0.0, 0.0, 100.0];
     let simulated = [0.0, 3.0, 108.0];
-    let check = check_of(&flown, &simulated, &tolerance(2.0, 0.1)).unwrap();
+    let check = check_samples(&flown, &simulated, &tolerance(2.0, 0.1)).unwrap();
     assert!((check.peak_error - 1.5).abs() < 1e-12);
     assert!((check.peak_error_at_s - SAMPLE_TIME_S).abs() < 1e-12);
     assert!((check.largest_excess - 1.0).abs() < 1e-12);
-    // Above 1 if and only if a sample is outside.
-    let inside = check_of(&flown, &[0.0, 2.0, 109.0], &tolerance(2.0, 0.1)).unwrap();
+    // The peak error is above 1 if and only if a sample is outside: the second sample is on
+    // its limit, and the others are inside.
+    let inside = check_samples(&flown, &[0.0, 2.0, 109.0], &tolerance(2.0, 0.1)).unwrap();
     assert_eq!((inside.inside, inside.peak_error), (3, 1.0));
 }
 
@@ -131,23 +134,24 @@ fn an_attitude_is_the_integral_of_its_rate_from_the_start() {
     let rate: Vec<f64> = (0..101)
         .map(|n| 3.0 * SAMPLE_TIME_S * f64::from(n))
         .collect();
-    let none = vec![0.0; 101];
+    let motionless = vec![0.0; 101];
     let attitude = ChannelTolerance {
         integrated: true,
         ..tolerance(1.0, 0.0)
     };
-    let check = check_of(&rate, &none, &attitude).unwrap();
-    // 3 t^2 / 2: the trapezoidal rule is exact on straight lines.
+    let check = check_samples(&rate, &motionless, &attitude).unwrap();
+    // The rate 3 t integrates to 3 t^2 / 2, which is 6 after 2 s: the trapezoidal rule is exact on
+    // straight lines. The tolerance is 1.
     assert!((check.flown[100] - 6.0).abs() < 1e-12 && check.flown[0] == 0.0);
     assert!((check.largest_excess - 5.0).abs() < 1e-12);
 }
 
 #[test]
-fn the_trend_is_the_sign_of_the_correlation_and_none_where_nothing_moves() {
+fn the_correlation_has_the_sign_of_the_trend_and_a_constant_has_none() {
     let SyntheticRecord { flown, simulated } = synthetic_record();
-    let turned: Vec<f64> = simulated.iter().map(|y| -y).collect();
-    let [same, opposite, constant] = [&simulated[..], &turned, &[4.0; 500]].map(|simulated| {
-        check_of(&flown, simulated, &tolerance(1.0, 0.1))
+    let reversed: Vec<f64> = simulated.iter().map(|y| -y).collect();
+    let [same, opposite, constant] = [&simulated[..], &reversed, &[4.0; 500]].map(|simulated| {
+        check_samples(&flown, simulated, &tolerance(1.0, 0.1))
             .unwrap()
             .correlation()
     });
@@ -187,21 +191,23 @@ fn a_record_of_several_windows_counts_every_sample_once() {
         (7.0 / 8.0, 1.0)
     );
     let worst = records[0].worst().unwrap();
+    // Sample 1 of the window from 4 s on has the error 4; its tolerance is 0.5.
     assert_eq!(
         (worst.largest_excess, worst.largest_excess_at_s),
         (3.5, 5.0)
     );
     assert!(records[1].correlation().unwrap() > 0.999 && records[0].correlation().unwrap() < 0.999);
-    let other = ChannelTolerance {
+    let missing_output = ChannelTolerance {
         output: 1,
         ..tolerance(0.5, 0.1)
     };
     assert_eq!(
-        RecordCheck::of_windows(&windows, &other).unwrap_err(),
+        RecordCheck::of_windows(&windows, &missing_output).unwrap_err(),
         ToleranceCheckError::NoOutput { output: 1 }
     );
 }
 
+/// A first-order lag of 0.5 s: `dx/dt = -2 x + gain u`.
 fn lag(gain: f64) -> StateSpace {
     StateSpace::new(dmatrix![-2.0], dmatrix![gain], dmatrix![1.0], dmatrix![0.0]).unwrap()
 }
@@ -221,12 +227,12 @@ fn check_lag(gain: f64, flown: &Segment) -> RecordCheck {
 }
 
 #[test]
-fn the_model_that_flew_is_inside_and_one_of_half_its_gain_is_not() {
+fn the_model_that_flew_is_inside_and_one_with_half_its_gain_is_not() {
     let stick = DMatrix::from_fn(1000, 1, |n, _| {
         10.0 * (0.8 * SAMPLE_TIME_S * n as f64).sin()
     });
-    let held = FirstOrderHold::new(&lag(2.0), SAMPLE_TIME_S).unwrap();
-    let flown = held.simulate(&dvector![1.0], &stick);
+    let hold = FirstOrderHold::new(&lag(2.0), SAMPLE_TIME_S).unwrap();
+    let flown = hold.simulate(&dvector![1.0], &stick);
     let segment = Segment {
         record: 0,
         start_s: 0.0,
@@ -241,26 +247,26 @@ fn the_model_that_flew_is_inside_and_one_of_half_its_gain_is_not() {
     assert!(wrong.share_inside() < 0.5 && wrong.worst().unwrap().largest_excess > 1.0);
     assert!(
         wrong.correlation().unwrap() > 0.9,
-        "too small, but the right trend"
+        "half the gain still has the right trend"
     );
 }
 
-fn refused_samples(flown: &[f64], simulated: &[f64]) -> ToleranceCheckError {
-    check_of(flown, simulated, &tolerance(1.0, 0.1)).unwrap_err()
+fn refusal(flown: &[f64], simulated: &[f64]) -> ToleranceCheckError {
+    check_samples(flown, simulated, &tolerance(1.0, 0.1)).unwrap_err()
 }
 
 #[test]
-fn missing_samples_are_refused_with_their_time() {
-    assert_eq!(refused_samples(&[], &[]), ToleranceCheckError::NoSamples);
+fn samples_that_cannot_be_compared_are_refused_with_the_reason() {
+    assert_eq!(refusal(&[], &[]), ToleranceCheckError::NoSamples);
     assert_eq!(
-        refused_samples(&[1.0, 2.0], &[1.0]),
+        refusal(&[1.0, 2.0], &[1.0]),
         ToleranceCheckError::Lengths {
             flown: 2,
             simulated: 1
         }
     );
     assert_eq!(
-        refused_samples(&[1.0, f64::NAN], &[1.0, 2.0]),
+        refusal(&[1.0, f64::NAN], &[1.0, 2.0]),
         ToleranceCheckError::NotFinite {
             origin: "flown",
             time_s: SAMPLE_TIME_S
@@ -280,7 +286,9 @@ fn default_row(quantity: &str) -> ChannelTolerance {
 }
 
 #[test]
-fn the_default_table_is_in_the_units_of_the_dataset() {
+fn default_tolerances_are_converted_to_the_units_of_the_dataset() {
+    // The table has 3 deg/s, 1.5 deg and 0.1 g; the dataset has pitch in rad, acceleration in
+    // m/s^2.
     let roll = default_row("roll rate");
     assert_eq!((roll.absolute, roll.relative), (3.0, 0.1));
     let bank = default_row("bank angle");
@@ -332,14 +340,18 @@ fn a_tolerance_that_fits_no_channel_is_refused() {
 }
 
 #[test]
-fn a_table_comes_back_as_it_was_and_a_wrong_row_is_refused_with_its_place() {
+fn a_tolerance_table_survives_json_and_a_wrong_row_is_refused_with_its_number() {
     let table = ToleranceTable::default();
     let text = serde_json::to_string(&table).unwrap();
     assert_eq!(
         serde_json::from_str::<ToleranceTable>(&text).unwrap(),
         table
     );
-    assert!(text.contains(r#"{"quantity":"normal acceleration","channel":"NZ","integrated":false,"absolute":0.1,"unit":"g","entry":"2.b.3.d, 2.c.3.b"}"#), "{text}");
+    let normal_acceleration = concat!(
+        r#"{"quantity":"normal acceleration","channel":"NZ","integrated":false,"#,
+        r#""absolute":0.1,"unit":"g","entry":"2.b.3.d, 2.c.3.b"}"#
+    );
+    assert!(text.contains(normal_acceleration), "{text}");
     let not_positive = |row, quantity: &str, name, found| ToleranceError::NotPositive {
         row,
         quantity: quantity.to_owned(),
@@ -377,9 +389,12 @@ fn a_table_comes_back_as_it_was_and_a_wrong_row_is_refused_with_its_place() {
 proptest! {
     #[test]
     fn a_model_compared_with_itself_is_inside_everywhere(
-        flown in prop::collection::vec(-50.0_f64..50.0, 1..200), absolute in 1e-6_f64..5.0, integrated in any::<bool>(),
+        flown in prop::collection::vec(-50.0_f64..50.0, 1..200),
+        absolute in 1e-6_f64..5.0,
+        integrated in any::<bool>(),
     ) {
-        let check = check_of(&flown, &flown, &ChannelTolerance { integrated, ..tolerance(absolute, 0.1) }).unwrap();
+        let tolerance = ChannelTolerance { integrated, ..tolerance(absolute, 0.1) };
+        let check = check_samples(&flown, &flown, &tolerance).unwrap();
         prop_assert_eq!(check.share_inside(), 1.0);
         prop_assert!(check.largest_excess <= -absolute && check.outside().is_empty());
     }
@@ -387,11 +402,15 @@ proptest! {
     #[test]
     fn a_wider_tolerance_leaves_no_fewer_samples_inside(
         pairs in prop::collection::vec((-50.0_f64..50.0, -50.0_f64..50.0), 1..200),
-        absolute in 0.1_f64..20.0, more in 0.0_f64..20.0, relative in 0.0_f64..0.5, more_relative in 0.0_f64..0.5,
+        absolute in 0.1_f64..20.0,
+        more_absolute in 0.0_f64..20.0,
+        relative in 0.0_f64..0.5,
+        more_relative in 0.0_f64..0.5,
     ) {
         let (flown, simulated): (Vec<f64>, Vec<f64>) = pairs.into_iter().unzip();
-        let narrow = check_of(&flown, &simulated, &tolerance(absolute, relative)).unwrap();
-        let wide = check_of(&flown, &simulated, &tolerance(absolute + more, relative + more_relative)).unwrap();
+        let narrow = check_samples(&flown, &simulated, &tolerance(absolute, relative)).unwrap();
+        let wider = tolerance(absolute + more_absolute, relative + more_relative);
+        let wide = check_samples(&flown, &simulated, &wider).unwrap();
         prop_assert!(wide.inside >= narrow.inside && wide.largest_excess <= narrow.largest_excess);
     }
 }

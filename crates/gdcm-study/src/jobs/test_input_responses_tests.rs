@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use nalgebra::DMatrix;
+
 use gdcm_method::correction::Pade;
 use gdcm_method::requirements::{TestInput, TestInputShape};
 use gdcm_model::dataset::BundleKind;
@@ -14,6 +16,7 @@ use super::requirement_jobs::TestAnswersJob;
 use crate::results::requirement_role::RequirementRole;
 use crate::results::test_input_responses::TestAnswers;
 
+/// Returns the responses of the models of the first condition to a test of the second input.
 fn answers(test: TestInput) -> TestAnswers {
     let analysis = EXAMPLE.analysis.clone();
     let condition = *analysis.conditions.keys().next().unwrap();
@@ -28,15 +31,15 @@ fn answers(test: TestInput) -> TestAnswers {
 }
 
 #[test]
-fn every_model_answers_in_proportion_to_the_size_of_the_test() {
+fn the_response_of_every_model_is_proportional_to_the_size_of_the_test() {
     let test = TestInput {
         shape: TestInputShape::Doublet,
         size: 1.0,
         duration_s: 1.0,
     };
-    let one = answers(test);
-    let three = answers(TestInput { size: 3.0, ..test });
-    for ((role, small), (_, large)) in one.models.iter().zip(&three.models) {
+    let single = answers(test);
+    let triple = answers(TestInput { size: 3.0, ..test });
+    for ((role, small), (_, large)) in single.models.iter().zip(&triple.models) {
         let small = small.as_ref().unwrap();
         let large = large.as_ref().unwrap();
         // The models are linear; the tolerance covers the rounding of a thousand steps.
@@ -49,7 +52,7 @@ fn every_model_answers_in_proportion_to_the_size_of_the_test() {
 }
 
 #[test]
-fn the_corrected_model_answers_as_that_which_is_exported() {
+fn the_corrected_model_responds_as_the_exported_model() {
     let test = TestInput {
         shape: TestInputShape::Step,
         size: 2.0,
@@ -71,16 +74,16 @@ fn the_corrected_model_answers_as_that_which_is_exported() {
     let expected = test
         .simulate(&exported, 1, found.sample_time_s, found.signal.len())
         .unwrap();
-    let of = |role| {
-        found
-            .models
-            .iter()
-            .find(|of| of.0 == role)
-            .unwrap()
-            .1
-            .as_ref()
-            .unwrap()
-    };
-    assert_eq!(*of(RequirementRole::Corrected), expected);
-    assert_ne!(*of(RequirementRole::Physics), expected);
+    assert_eq!(*response(&found, RequirementRole::Corrected), expected);
+    assert_ne!(*response(&found, RequirementRole::Physics), expected);
+}
+
+/// Returns the outputs of the model in a role, samples x outputs.
+fn response(answers: &TestAnswers, role: RequirementRole) -> &DMatrix<f64> {
+    let (_, outputs) = answers
+        .models
+        .iter()
+        .find(|(model_role, _)| *model_role == role)
+        .unwrap();
+    outputs.as_ref().unwrap()
 }

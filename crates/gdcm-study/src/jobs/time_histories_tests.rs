@@ -29,7 +29,8 @@ use crate::results::time_histories::{HistoryRecord, HistoryRecords, TimeHistorie
 const CONDITION: ConditionId = ConditionId(3);
 const SAMPLE_TIME_S: f64 = 0.02;
 
-/// Builds a sweep of the first input alone, `samples` long, with the outputs of a role's model.
+/// Builds a record of `samples` samples: a sweep of the first input, and the outputs that the model
+/// in `role` simulates.
 fn flown(analysis: &Analysis, role: RequirementRole, samples: usize) -> FlightRecord {
     let model = analysis
         .role_model(analysis.condition(CONDITION).unwrap(), role)
@@ -39,8 +40,8 @@ fn flown(analysis: &Analysis, role: RequirementRole, samples: usize) -> FlightRe
     let inputs = DMatrix::from_fn(samples, model.inputs(), |n, input| {
         if input == 0 { sweep(time_s[n]) } else { 0.0 }
     });
-    let held = FirstOrderHold::new(&model, SAMPLE_TIME_S).unwrap();
-    let outputs = held.simulate(&DVector::zeros(model.order()), &inputs);
+    let hold = FirstOrderHold::new(&model, SAMPLE_TIME_S).unwrap();
+    let outputs = hold.simulate(&DVector::zeros(model.order()), &inputs);
     FlightRecord {
         name: "sweep".into(),
         time_s,
@@ -49,15 +50,17 @@ fn flown(analysis: &Analysis, role: RequirementRole, samples: usize) -> FlightRe
     }
 }
 
+/// Returns a held-out record of [`CONDITION`].
 fn records(analysis: &Analysis, flight: FlightRecord) -> Vec<HistoryRecords> {
     let (inputs, outputs) = analysis.study.dataset.input_and_output_names();
-    let [inputs, outputs]: [Vec<&str>; 2] =
-        [&inputs, &outputs].map(|of| of.iter().map(String::as_str).collect());
+    let inputs: Vec<&str> = inputs.iter().map(String::as_str).collect();
+    let outputs: Vec<&str> = outputs.iter().map(String::as_str).collect();
     let record = HistoryRecord {
         flight: Arc::new(flight).into(),
         held_out: true,
     };
     let preparation = Preparation {
+        // An output that stays constant is not a gap.
         keep_frozen: true,
         ..Preparation::new(&inputs, &outputs)
     };
@@ -79,23 +82,36 @@ fn histories(analysis: &Analysis, flight: FlightRecord, table: &ToleranceTable) 
 }
 
 #[test]
-fn the_model_that_flew_is_inside_and_the_physics_model_is_not() {
+fn the_model_that_generated_the_record_is_inside_and_the_physics_model_is_not() {
     let analysis = &EXAMPLE.analysis;
     let flight = flown(analysis, RequirementRole::Identified, 1500);
     let found = histories(analysis, flight, &ToleranceTable::default());
-    assert_eq!(found.records.len(), 4, "{:?}", found.missing);
+    assert_eq!(
+        found.records.len(),
+        4,
+        "a finding for each role: {:?}",
+        found.missing
+    );
     let of_role = |role| found.of_role(CONDITION, role).next().unwrap();
     let identified = of_role(RequirementRole::Identified);
     assert_eq!(
         (identified.samples, identified.moved_input.as_deref()),
         (1500, Some("LON"))
     );
-    for of in &identified.tolerances {
-        assert!(of.share_inside == 1.0 && of.largest_excess < 0.0, "{of:?}");
-        let trend = (of.on_axis == Some(false)).then_some(Trend::Correct);
+    for finding in &identified.tolerances {
         assert!(
-            of.trend == trend && of.correlation.unwrap() > 0.999_999,
-            "{of:?}"
+            finding.share_inside == 1.0 && finding.largest_excess < 0.0,
+            "{finding:?}"
+        );
+        // Only off-axis responses have a trend.
+        let trend = if finding.on_axis == Some(false) {
+            Some(Trend::Correct)
+        } else {
+            None
+        };
+        assert!(
+            finding.trend == trend && finding.correlation.unwrap() > 0.999_999,
+            "{finding:?}"
         );
     }
     // The model reproduces its own record, except for the least-squares fit of the initial
@@ -109,31 +125,33 @@ fn the_model_that_flew_is_inside_and_the_physics_model_is_not() {
         physics
             .tolerances
             .iter()
-            .any(|of| of.share_inside < 1.0 && of.largest_excess > 0.0)
+            .any(|finding| finding.share_inside < 1.0 && finding.largest_excess > 0.0)
     );
     assert!(
         corrected.j_rms.unwrap() < physics.j_rms.unwrap(),
-        "a correction brings the model nearer to flight"
+        "the correction should lower the error of the model"
     );
     let pitch = identified
         .tolerances
         .iter()
-        .find(|of| of.quantity == "pitch rate")
+        .find(|finding| finding.quantity == "pitch rate")
         .unwrap();
     assert_eq!((pitch.on_axis, pitch.trend), (Some(true), None));
 }
 
 #[test]
-fn shares_of_a_condition_are_those_of_its_records_by_their_samples() {
+fn shares_and_costs_of_a_condition_weight_its_records_by_their_samples() {
+    // Records of 600 and 1200 samples have the weights 1/3 and 2/3.
     let analysis = &EXAMPLE.analysis;
     let flights = [600, 1200].map(|samples| flown(analysis, RequirementRole::Identified, samples));
-    let mut given = records(analysis, flights[0].clone());
-    given[0].records.push(HistoryRecord {
+    let mut both_records = records(analysis, flights[0].clone());
+    both_records[0].records.push(HistoryRecord {
         flight: Arc::new(flights[1].clone()).into(),
         held_out: false,
     });
     let table = ToleranceTable::default();
-    let found = time_histories_of(analysis, &given, &table, &Execution::sequential()).unwrap();
+    let found =
+        time_histories_of(analysis, &both_records, &table, &Execution::sequential()).unwrap();
     let role = RequirementRole::Physics;
     let [short, long] =
         [0, 1].map(|n| &found.of_role(CONDITION, role).nth(n).unwrap().tolerances[2]);
@@ -142,29 +160,25 @@ fn shares_of_a_condition_are_those_of_its_records_by_their_samples() {
         .unwrap();
     assert!((share - (short.share_inside + 2.0 * long.share_inside) / 3.0).abs() < 1e-12);
     assert_eq!(found.conditions(), [(CONDITION, 2)]);
-    let squares = |n: usize| {
-        found
-            .of_role(CONDITION, role)
-            .nth(n)
-            .unwrap()
-            .j_rms
-            .unwrap()
-            .powi(2)
-    };
-    let rms = ((squares(0) + 2.0 * squares(1)) / 3.0).sqrt();
+    let [short_j, long_j] = [0, 1].map(|n| {
+        let finding = found.of_role(CONDITION, role).nth(n).unwrap();
+        finding.j_rms.unwrap()
+    });
+    let rms = ((short_j.powi(2) + 2.0 * long_j.powi(2)) / 3.0).sqrt();
     assert!((found.j_rms(CONDITION, role).unwrap() - rms).abs() < 1e-12);
 }
 
+fn reasons(found: &TimeHistories) -> Vec<MissingReason> {
+    found
+        .missing
+        .iter()
+        .map(|missing| missing.why.clone())
+        .collect()
+}
+
 #[test]
-fn what_is_not_compared_is_said() {
+fn every_missing_comparison_has_a_reason() {
     let analysis = &EXAMPLE.analysis;
-    let reasons = |found: &TimeHistories| {
-        found
-            .missing
-            .iter()
-            .map(|of| of.why.clone())
-            .collect::<Vec<_>>()
-    };
     let table = ToleranceTable::default();
     let none = time_histories_of(analysis, &[], &table, &Execution::sequential()).unwrap();
     assert_eq!(
@@ -172,6 +186,7 @@ fn what_is_not_compared_is_said() {
         (vec![MissingReason::NoRecord], 0)
     );
 
+    // 1 s is shorter than the minimum of 2 s.
     let short = flown(analysis, RequirementRole::Identified, 50);
     let found = histories(analysis, short, &table);
     assert!(found.records.is_empty());
@@ -181,23 +196,23 @@ fn what_is_not_compared_is_said() {
             if record == "sweep"
                 && matches!(why, PreparationError::NothingLeft { least_s: 2.0, .. })
     )));
-    let others = found
+    let conditions_without_record = found
         .missing
         .iter()
-        .filter(|of| of.why == MissingReason::NoRecordOfCondition)
+        .filter(|missing| missing.why == MissingReason::NoRecordOfCondition)
         .count();
-    assert_eq!(others, analysis.conditions.len() - 1);
+    assert_eq!(conditions_without_record, analysis.conditions.len() - 1);
 
-    let row = Tolerance {
+    let thrust = Tolerance {
         channel: "T".into(),
         quantity: "thrust".into(),
         ..table.rows()[0].clone()
     };
-    let other = ToleranceTable::new("mine", vec![row, table.rows()[2].clone()]).unwrap();
+    let with_thrust = ToleranceTable::new("mine", vec![thrust, table.rows()[2].clone()]).unwrap();
     let found = histories(
         analysis,
         flown(analysis, RequirementRole::Identified, 600),
-        &other,
+        &with_thrust,
     );
     assert!(reasons(&found).iter().any(|why| matches!(
         why,
@@ -205,8 +220,11 @@ fn what_is_not_compared_is_said() {
             if quantity == "thrust" && channel == "T"
     )));
     assert!(
-        found.records.iter().all(|of| of.tolerances.len() == 1),
-        "the rest is compared"
+        found
+            .records
+            .iter()
+            .all(|finding| finding.tolerances.len() == 1),
+        "the other row should be compared"
     );
 }
 
@@ -217,10 +235,10 @@ fn a_record_that_is_not_finite_is_refused_with_its_name() {
     flight.outputs.column_mut(1).fill(f64::NAN);
     let found = histories(analysis, flight, &ToleranceTable::default());
     assert!(found.records.is_empty());
-    assert!(found.missing.iter().any(|of| {
-        of.condition == Some(CONDITION)
+    assert!(found.missing.iter().any(|missing| {
+        missing.condition == Some(CONDITION)
             && matches!(
-                &of.why,
+                &missing.why,
                 MissingReason::RecordNotPrepared { record, .. }
                 | MissingReason::NotCompared { record, .. }
                     if record == "sweep"
@@ -229,7 +247,7 @@ fn a_record_that_is_not_finite_is_refused_with_its_name() {
 }
 
 #[test]
-fn a_corrected_model_answers_with_the_couplings_of_the_study() {
+fn the_corrected_model_includes_the_couplings_and_the_physics_model_does_not() {
     let analysis = &COUPLED.1;
     let result = analysis.condition(CONDITION).unwrap();
     let physics = &result.condition.bundle(BundleKind::Physics)[result.comparison.physics.model];
@@ -237,7 +255,7 @@ fn a_corrected_model_answers_with_the_couplings_of_the_study() {
     let model = analysis
         .role_model(result, RequirementRole::Corrected)
         .unwrap();
-    let answered = FrequencyResponse::from_dynamics(&Dynamics::StateSpace(model), &grid);
+    let corrected = FrequencyResponse::from_dynamics(&Dynamics::StateSpace(model), &grid);
     let plain = FrequencyResponse::from_dynamics(&physics.dynamics, &grid);
     let coupled = result.coupled_response(&plain);
     let pair = Pair::new(1, 0);
@@ -247,22 +265,22 @@ fn a_corrected_model_answers_with_the_couplings_of_the_study() {
         // 1e-4 allows for the phase error of Padé approximants in the band, for delays of tens of
         // ms.
         assert!(
-            (answered.curve(pair)[k] - expected).norm() < 1e-4 * expected.norm(),
+            (corrected.curve(pair)[k] - expected).norm() < 1e-4 * expected.norm(),
             "{omega}"
         );
     }
-    let as_it_is = analysis
+    let uncorrected = analysis
         .role_model(result, RequirementRole::Physics)
         .unwrap();
-    let as_it_is = FrequencyResponse::from_dynamics(&Dynamics::StateSpace(as_it_is), &grid);
+    let uncorrected = FrequencyResponse::from_dynamics(&Dynamics::StateSpace(uncorrected), &grid);
     assert!(
-        (as_it_is.curve(pair)[0] - plain.curve(pair)[0]).norm()
+        (uncorrected.curve(pair)[0] - plain.curve(pair)[0]).norm()
             < 1e-12 * plain.curve(pair)[0].norm()
     );
 }
 
 #[test]
-fn a_job_is_stopped_and_is_known_by_what_it_depends_on() {
+fn a_job_can_be_cancelled_and_equals_only_a_job_with_the_same_inputs() {
     struct Stopped;
     impl Progress for Stopped {
         fn cancelled(&self) -> bool {
@@ -305,7 +323,7 @@ fn a_job_is_stopped_and_is_known_by_what_it_depends_on() {
 }
 
 #[test]
-fn the_models_of_a_condition_are_compared_in_the_same_windows() {
+fn models_of_a_condition_are_compared_in_the_same_windows() {
     let analysis = &EXAMPLE.analysis;
     let flight = flown(analysis, RequirementRole::Identified, 1500);
     let segments = segments_of(&flight, &records(analysis, flight.clone())[0].preparation).unwrap();
@@ -313,9 +331,15 @@ fn the_models_of_a_condition_are_compared_in_the_same_windows() {
     let slow = analysis
         .role_model(result, RequirementRole::Physics)
         .unwrap();
-    // A mode that grows by a factor of e in 1 s is compared over 3 s.
+    // The fastest pole is shifted to 1 rad/s: a mode that grows by a factor of e in 1 s is compared
+    // over 3 s.
     let fast = StateSpace::new(
-        slow.a() + DMatrix::from_diagonal_element(slow.order(), slow.order(), 1.0 - fastest(&slow)),
+        slow.a()
+            + DMatrix::from_diagonal_element(
+                slow.order(),
+                slow.order(),
+                1.0 - largest_real_part(&slow),
+            ),
         slow.b().clone(),
         slow.c().clone(),
         slow.d().clone(),
@@ -336,8 +360,8 @@ fn the_models_of_a_condition_are_compared_in_the_same_windows() {
             .collect()
     };
     assert_eq!(windows(&slow), windows(&fast));
-    // A model that diverges too fast to be compared does not shorten the windows of the other
-    // models.
+    // A model that diverges too fast to be compared (a factor of e in 10 ms) does not shorten the
+    // windows of the other models.
     let hopeless = StateSpace::new(
         slow.a() + DMatrix::from_diagonal_element(slow.order(), slow.order(), 100.0),
         slow.b().clone(),
@@ -349,7 +373,7 @@ fn the_models_of_a_condition_are_compared_in_the_same_windows() {
 }
 
 /// Returns the maximum real part of the poles \[rad/s\].
-fn fastest(model: &StateSpace) -> f64 {
+fn largest_real_part(model: &StateSpace) -> f64 {
     model
         .a()
         .complex_eigenvalues()

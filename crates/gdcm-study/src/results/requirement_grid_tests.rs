@@ -1,10 +1,9 @@
-//! Tests of the grid of requirements: known values, reasons, and counts.
+//! Tests of the grid of requirements: known values, reasons why values are missing, and counts.
 
 use std::collections::BTreeMap;
 
 use gdcm_method::requirements::NamedBy;
 use gdcm_method::requirements::mode_comparison::ModeValues;
-
 use gdcm_method::requirements::{ModeName, ModeVerdict, ToleranceTable};
 use gdcm_model::dataset::ConditionId;
 
@@ -25,13 +24,13 @@ use crate::results::required_modes::IdentifiedPoles;
 use crate::results::requirements::requirements_of;
 use crate::results::time_histories::{HistoryFinding, ToleranceFinding};
 
-const ID: ConditionId = ConditionId(3);
+const CONDITION: ConditionId = ConditionId(3);
 
 /// A bandwidth \[rad/s\] and a phase delay \[s\] of the example's roll response.
 fn bandwidth(role: RequirementRole, omega: Option<f64>, delay_s: f64) -> BandwidthFinding {
     let dataset = &EXAMPLE.analysis.study.dataset;
     BandwidthFinding {
-        condition: ID,
+        condition: CONDITION,
         pair: dataset.find_pair("P", "LAT").unwrap(),
         output: "P".to_owned(),
         role,
@@ -43,7 +42,7 @@ fn bandwidth(role: RequirementRole, omega: Option<f64>, delay_s: f64) -> Bandwid
 
 fn summary(role: RequirementRole, mean_j: f64, share: f64) -> SummaryFinding {
     SummaryFinding {
-        condition: ID,
+        condition: CONDITION,
         airspeed_kt: 45.0,
         role,
         model: String::new(),
@@ -55,6 +54,7 @@ fn summary(role: RequirementRole, mean_j: f64, share: f64) -> SummaryFinding {
     }
 }
 
+/// A mode with this natural frequency and the damping ratio 0.6.
 fn numbers(modulus_rad_s: f64) -> ModeNumbers {
     ModeNumbers {
         model: String::new(),
@@ -69,9 +69,10 @@ fn numbers(modulus_rad_s: f64) -> ModeNumbers {
     }
 }
 
+/// A mode whose identified natural frequency is 2 rad/s; `physics` is that of the physics model.
 fn mode(name: ModeName, verdict: ModeVerdict, physics: Option<f64>) -> ModeFinding {
     ModeFinding {
-        condition: ID,
+        condition: CONDITION,
         airspeed_kt: 45.0,
         number: 1,
         name: Some(name),
@@ -86,7 +87,9 @@ fn mode(name: ModeName, verdict: ModeVerdict, physics: Option<f64>) -> ModeFindi
     }
 }
 
-fn known() -> Requirements {
+/// Findings for [`CONDITION`]; the mean J and the shares apply to on-axis and to all responses
+/// alike.
+fn known_requirements() -> Requirements {
     use RequirementRole::{Corrected, Identified, Physics};
     Requirements {
         bandwidth: vec![
@@ -104,8 +107,9 @@ fn known() -> Requirements {
     }
 }
 
-/// Findings for a record: the peak errors in roll rate for the corrected and the physics model.
-fn record(held_out: bool, corrected: f64, physics: f64) -> Vec<HistoryFinding> {
+/// Findings for a record: the peak errors in roll rate, relative to the tolerance, for the
+/// corrected and the physics model.
+fn record_findings(held_out: bool, corrected: f64, physics: f64) -> Vec<HistoryFinding> {
     let roles = [
         (RequirementRole::Corrected, corrected),
         (RequirementRole::Physics, physics),
@@ -113,7 +117,7 @@ fn record(held_out: bool, corrected: f64, physics: f64) -> Vec<HistoryFinding> {
     let mut findings = Vec::new();
     for (role, peak_error) in roles {
         findings.push(HistoryFinding {
-            condition: ID,
+            condition: CONDITION,
             airspeed_kt: 45.0,
             record: "a".to_owned(),
             held_out,
@@ -168,13 +172,21 @@ fn grid_with(
     })
 }
 
+/// Value of the corrected model.
 fn value(grid: &RequirementGrid, requirement: Requirement) -> f64 {
-    grid.cell(requirement, ID).unwrap().corrected.value.unwrap()
+    grid.cell(requirement, CONDITION)
+        .unwrap()
+        .corrected
+        .value
+        .unwrap()
 }
 
 #[test]
 fn known_values_are_judged_and_counted() {
-    let grid = grid(&known(), record(true, 0.7, 1.2));
+    // Relative differences from the identified model for bandwidth (2.1 / 2.0 - 1) and frequencies
+    // (1.8 / 2.0 - 1, 2.2 / 2.0 - 1), differences for phase delay (0.10 - 0.13). Default limits:
+    // bandwidth 0.1, phase delay 0.02 s, mean J 10, MUAD share 0.9, peak error 1.
+    let grid = grid(&known_requirements(), record_findings(true, 0.7, 1.2));
     let pair = EXAMPLE
         .analysis
         .study
@@ -206,14 +218,14 @@ fn known_values_are_judged_and_counted() {
             (value(&grid, requirement) - expected).abs() < 1e-12,
             "{requirement:?}"
         );
-        let cell = grid.cell(requirement, ID).unwrap();
+        let cell = grid.cell(requirement, CONDITION).unwrap();
         assert_eq!(cell.corrected.verdict.code(), corrected, "{requirement:?}");
         assert_eq!(cell.physics.verdict.code(), physics, "{requirement:?}");
     }
-    // Not determined: the unpaired phugoid, and the quantities of the table that the record
-    // lacks.
+    // Not determined: the unpaired phugoid, and all quantities of the tolerance table except for
+    // the roll rate.
     let phugoid = grid
-        .cell(Requirement::ModeFrequency(ModeName::Phugoid), ID)
+        .cell(Requirement::ModeFrequency(ModeName::Phugoid), CONDITION)
         .unwrap();
     assert_eq!(
         phugoid.corrected.verdict,
@@ -234,22 +246,36 @@ fn known_values_are_judged_and_counted() {
     assert!(summary.is_physics_outside);
 }
 
+/// Formats the boundary of a level: vertical at a bandwidth \[rad/s\], up to a phase delay of
+/// `height_s`. The level is met on the boundary and to its right.
+fn vertical_boundary(level: u8, omega: f64, height_s: f64) -> String {
+    format!(
+        r#"{{"name": "{level}", "level": {level}, "axis": "P",
+            "points": [[{omega}, 0], [{omega}, {height_s}]]}}"#
+    )
+}
+
+/// Returns settings with the boundaries of levels 1 and 2 at these bandwidths \[rad/s\].
+fn levels(first: f64, second: f64, height_s: f64) -> RequirementSettings {
+    let text = format!(
+        "[{}, {}]",
+        vertical_boundary(1, first, height_s),
+        vertical_boundary(2, second, height_s)
+    );
+    RequirementSettings {
+        levels: serde_json::from_str(&text).unwrap(),
+        ..RequirementSettings::default()
+    }
+}
+
 #[test]
 fn the_level_of_a_model_is_compared_with_that_of_the_identified_model() {
-    let requirements = known();
+    let requirements = known_requirements();
     let level = Requirement::Level(requirements.bandwidth[0].pair);
     assert!(grid(&requirements, Vec::new()).row(level).is_none());
-    // Physics (2.5 rad/s, 0.16 s), corrected (2.1, 0.10), identified (2.0, 0.13).
-    let levels = |first: f64, second: f64, height_s: f64| -> RequirementSettings {
-        let text = format!(
-            r#"[{{"name": "1", "level": 1, "axis": "P", "points": [[{first}, 0], [{first}, {height_s}]]}},
-                {{"name": "2", "level": 2, "axis": "P", "points": [[{second}, 0], [{second}, {height_s}]]}}]"#
-        );
-        RequirementSettings {
-            levels: serde_json::from_str(&text).unwrap(),
-            ..RequirementSettings::default()
-        }
-    };
+    // Bandwidth and phase delay: physics (2.5 rad/s, 0.16 s), corrected (2.1, 0.10), identified
+    // (2.0, 0.13).
+    // A level is a requirement: the model must have the level of the identified model.
     for (settings, corrected, physics) in [
         (levels(2.2, 1.0, 0.3), (2.0, "met"), (1.0, "outside")),
         (levels(2.05, 1.0, 0.3), (1.0, "outside"), (1.0, "outside")),
@@ -257,14 +283,14 @@ fn the_level_of_a_model_is_compared_with_that_of_the_identified_model() {
         (levels(4.0, 3.0, 0.3), (3.0, "met"), (3.0, "met")),
     ] {
         let grid = grid_with(&requirements, Vec::new(), &settings);
-        let cell = grid.cell(level, ID).unwrap();
+        let cell = grid.cell(level, CONDITION).unwrap();
         let found = |cell: &RoleCell| (cell.value.unwrap(), cell.verdict.code());
         assert_eq!(found(&cell.corrected), corrected);
         assert_eq!(found(&cell.physics), physics);
     }
     // The physics model lies above boundaries that end at 0.15 s.
     let low = grid_with(&requirements, Vec::new(), &levels(2.0, 1.0, 0.15));
-    let cell = low.cell(level, ID).unwrap();
+    let cell = low.cell(level, CONDITION).unwrap();
     assert_eq!(
         cell.physics.verdict,
         CellVerdict::NotDetermined(NotDetermined::AboveBoundaries(RequirementRole::Physics))
@@ -275,29 +301,29 @@ fn the_level_of_a_model_is_compared_with_that_of_the_identified_model() {
 }
 
 #[test]
-fn only_held_out_records_count_and_of_several_the_worst() {
+fn the_worst_held_out_record_counts_and_other_records_do_not() {
     let peak = Requirement::PeakError(0);
-    let mut records = record(true, 0.7, 0.5);
-    records.extend(record(true, 0.9, 0.4));
-    records.extend(record(false, 5.0, 5.0));
-    assert!((value(&grid(&known(), records), peak) - 0.9).abs() < 1e-12);
-    let grid = grid(&known(), record(false, 0.7, 0.5));
+    let mut records = record_findings(true, 0.7, 0.5);
+    records.extend(record_findings(true, 0.9, 0.4));
+    records.extend(record_findings(false, 5.0, 5.0));
+    assert!((value(&grid(&known_requirements(), records), peak) - 0.9).abs() < 1e-12);
+    let grid = grid(&known_requirements(), record_findings(false, 0.7, 0.5));
     assert_eq!(
-        grid.cell(peak, ID).unwrap().corrected.verdict,
+        grid.cell(peak, CONDITION).unwrap().corrected.verdict,
         CellVerdict::NotDetermined(NotDetermined::NoHeldOutRecord)
     );
 }
 
 #[test]
-fn a_missing_bandwidth_says_which_model_lacks_it() {
-    let mut requirements = known();
+fn a_missing_bandwidth_names_the_model_that_lacks_it() {
+    let mut requirements = known_requirements();
     requirements.bandwidth[2].omega_bw_rad_s = None;
     requirements.bandwidth[2]
         .absent
         .insert("omega_bw_rad_s", NoBandwidth::NetGainNotPositive);
     let pair = requirements.bandwidth[0].pair;
     let grid = grid(&requirements, Vec::new());
-    let cell = grid.cell(Requirement::Bandwidth(pair), ID).unwrap();
+    let cell = grid.cell(Requirement::Bandwidth(pair), CONDITION).unwrap();
     assert_eq!(
         cell.corrected.verdict,
         CellVerdict::NotDetermined(NotDetermined::Bandwidth {
@@ -308,7 +334,7 @@ fn a_missing_bandwidth_says_which_model_lacks_it() {
 }
 
 #[test]
-fn a_quantity_has_one_row_and_each_condition_a_cell() {
+fn the_grid_has_a_row_for_each_quantity_and_a_cell_for_each_condition() {
     let analysis = &EXAMPLE.analysis;
     let requirements = requirements_of(
         analysis,

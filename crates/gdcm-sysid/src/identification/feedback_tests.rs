@@ -1,5 +1,5 @@
-//! Levels of feedback of synthetic flights with fresh seeds, compared with the true error of the
-//! model (M14.14, M14.24).
+//! Levels of feedback of synthetic flights, compared with the true error of the model (M14.14,
+//! M14.24). The seeds were used for nothing else.
 
 use nalgebra::{Complex, DMatrix};
 
@@ -12,19 +12,20 @@ use gdcm_model::statistics::median;
 
 use super::identify::identify;
 use super::known_answers_tests::{matrix, number};
-use super::real_flight_tests::{Flown, codes, known, options};
+use super::real_flight_tests::{SyntheticFlight, codes, options, reference_results};
 use crate::diagnostics::feedback::{Feedback, FeedbackLevel};
 
-/// Returns the response of the simulated aircraft to samples of its input.
+/// Returns the response of the simulated aircraft to samples of its input:
+/// `[0 1 0] (z I - F)^-1 g`, where g is the first column of G.
 fn truth(omega: f64) -> Complex<f64> {
-    let file = known();
+    let file = reference_results();
     let generator = &file["generator"];
     let f = matrix(&generator["F"]);
     let g = matrix(&generator["G"]);
     let z = Complex::cis(omega * number(&generator["dt"]));
     let a = DMatrix::from_fn(3, 3, |row, column| {
-        let own = Complex::from(-f[(row, column)]);
-        if row == column { z + own } else { own }
+        let entry = Complex::from(-f[(row, column)]);
+        if row == column { z + entry } else { entry }
     });
     let b = DMatrix::from_fn(3, 1, |row, _| Complex::from(g[(row, 0)]));
     a.lu().solve(&b).unwrap()[1]
@@ -65,17 +66,16 @@ struct Outcome {
 }
 
 /// Simulates and identifies three records of a minute.
-fn outcome(flown: Flown, seed: u64) -> Outcome {
-    let file = known();
-    let records: Vec<FlightRecord> = (0..3)
-        .map(|at| {
-            let own = Flown {
-                seed: seed + at,
-                ..flown
-            };
-            own.record(&file).0
-        })
-        .collect();
+fn outcome(settings: SyntheticFlight, seed: u64) -> Outcome {
+    let file = reference_results();
+    let mut records: Vec<FlightRecord> = Vec::new();
+    for number in 0..3 {
+        let flight = SyntheticFlight {
+            seed: seed + number,
+            ..settings
+        };
+        records.push(flight.record(&file).0);
+    }
     let found = identify(&records, &options(), &Sequential, &Unobserved).unwrap();
     Outcome {
         feedback: found.feedback.clone().unwrap(),
@@ -84,32 +84,33 @@ fn outcome(flown: Flown, seed: u64) -> Outcome {
     }
 }
 
-/// A small excitation, and noise of the sensor that closes the loop.
-fn sensor_in_the_loop() -> Flown {
-    Flown {
+/// A small excitation, and noise of the sensor that closes the loop: the noise reaches the input.
+fn sensor_in_the_loop() -> SyntheticFlight {
+    SyntheticFlight {
         feedback: 0.15,
-        amp: 0.05,
-        ..Flown::calm(0, 0)
+        amplitude: 0.05,
+        ..SyntheticFlight::calm(0, 0)
     }
 }
 
-/// Gusts and the remnant of a pilot move the aircraft, and no sweep.
-fn without_sweep() -> Flown {
-    Flown {
+/// A flight without a sweep: gusts and the pilot's remnant move the aircraft.
+fn without_sweep() -> SyntheticFlight {
+    SyntheticFlight {
         gust: 0.3,
-        amp: 0.0,
+        amplitude: 0.0,
         noise: 0.02,
         feedback: 0.5,
         remnant: 0.3,
-        ..Flown::calm(0, 0)
+        ..SyntheticFlight::calm(0, 0)
     }
 }
 
 #[test]
-fn a_sensor_in_the_loop_is_not_overstated() {
+fn the_effect_of_a_noisy_sensor_in_the_loop_is_not_overstated() {
     for seed in [40_000, 40_010] {
         let outcome = outcome(sensor_in_the_loop(), seed);
-        // The predictor of 40 samples alone would see b = 0.26 and 0.32 with z above 14: level 2.
+        // The predictor with 40 past samples alone would find the fed-back share b = 0.26 and 0.32
+        // with a significance z above 14, which is level 2; but the model is right within 10 %.
         assert!(outcome.error.relative < 0.1, "{:?}", outcome.error);
         assert!(
             outcome.feedback.level() < FeedbackLevel::TooMuch,
@@ -124,7 +125,7 @@ fn a_sensor_in_the_loop_is_not_overstated() {
 #[test]
 fn a_flight_without_a_coherent_input_has_level_2() {
     let outcome = outcome(without_sweep(), 40_000);
-    // The share alone is at level 1.
+    // The share alone would be level 1 (below 0.18); level 2 comes from the coherence (M14.14).
     assert!(outcome.feedback.share < 0.18, "{}", outcome.feedback.share);
     assert!(outcome.feedback.coherence < 0.6 && outcome.feedback.significance > 1.6);
     assert_eq!(outcome.feedback.level(), FeedbackLevel::TooMuch);
@@ -136,23 +137,29 @@ fn a_flight_without_a_coherent_input_has_level_2() {
 #[test]
 #[ignore = "a measurement of rates over many seeds: minutes"]
 fn measure_levels_over_many_seeds() {
-    let calm = Flown::calm(0, 0);
+    let calm = SyntheticFlight::calm(0, 0);
     let sensor = sensor_in_the_loop();
-    let gusty = Flown {
+    let gusty = SyntheticFlight {
         gust: 1.0,
-        amp: 0.4,
+        amplitude: 0.4,
         noise: 0.02,
         feedback: 0.15,
         ..calm
     };
     let without = without_sweep();
-    // The level that most flights have, and the minimum number of 20 that have it.
-    let cases: [(&str, Flown, usize, usize); 12] = [
+    // The level that most flights have, and the minimum number of the 20 flights that have it. The
+    // last row is a known weakness: level 2 is right, but few flights reach it (M14.24).
+    let cases: [(&str, SyntheticFlight, usize, usize); 12] = [
         ("open loop, noise 0.3", calm, 0, 18),
-        ("open loop, noise 2", Flown { noise: 2.0, ..calm }, 0, 18),
+        (
+            "open loop, noise 2",
+            SyntheticFlight { noise: 2.0, ..calm },
+            0,
+            18,
+        ),
         (
             "loop, noise 0.02",
-            Flown {
+            SyntheticFlight {
                 noise: 0.02,
                 feedback: 0.15,
                 ..calm
@@ -162,16 +169,19 @@ fn measure_levels_over_many_seeds() {
         ),
         (
             "loop, noise 0.3, sweep 0.2",
-            Flown { amp: 0.2, ..sensor },
+            SyntheticFlight {
+                amplitude: 0.2,
+                ..sensor
+            },
             0,
             18,
         ),
         ("loop, noise 0.3, sweep 0.05", sensor, 0, 10),
         (
             "strong loop, noise 0.3, sweep 0.2",
-            Flown {
+            SyntheticFlight {
                 feedback: 0.5,
-                amp: 0.2,
+                amplitude: 0.2,
                 ..sensor
             },
             1,
@@ -179,7 +189,7 @@ fn measure_levels_over_many_seeds() {
         ),
         (
             "strong loop, noise 0.3, sweep 0.05",
-            Flown {
+            SyntheticFlight {
                 feedback: 0.5,
                 ..sensor
             },
@@ -188,9 +198,9 @@ fn measure_levels_over_many_seeds() {
         ),
         (
             "gust 0.3, sweep 1",
-            Flown {
+            SyntheticFlight {
                 gust: 0.3,
-                amp: 1.0,
+                amplitude: 1.0,
                 ..gusty
             },
             0,
@@ -199,14 +209,17 @@ fn measure_levels_over_many_seeds() {
         ("gust 1, sweep 0.4", gusty, 2, 10),
         (
             "no sweep, gust 1, remnant 0.05",
-            Flown { amp: 0.0, ..gusty },
+            SyntheticFlight {
+                amplitude: 0.0,
+                ..gusty
+            },
             2,
             18,
         ),
         ("no sweep, gust 0.3, remnant 0.3", without, 2, 17),
         (
             "no sweep, gust 0.1, remnant 0.05, weak loop",
-            Flown {
+            SyntheticFlight {
                 gust: 0.1,
                 noise: 0.3,
                 feedback: 0.05,
@@ -217,11 +230,11 @@ fn measure_levels_over_many_seeds() {
             1,
         ),
     ];
-    for (name, flown, level, least) in cases {
+    for (name, flight, level, least) in cases {
         let mut at_level = [0; 3];
         let mut errors: [Vec<f64>; 3] = Default::default();
         for seed in 0..20 {
-            let outcome = outcome(flown, 90_000 + 10 * seed);
+            let outcome = outcome(flight, 90_000 + 10 * seed);
             let found = outcome.feedback.level() as usize;
             at_level[found] += 1;
             errors[found].push(outcome.error.db);

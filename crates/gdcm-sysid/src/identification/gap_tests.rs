@@ -1,5 +1,5 @@
-//! Records with gaps (M14.21): known answers of independent numpy code, the gradient with missing
-//! inputs, and fresh flights with a known truth.
+//! Records with gaps (M14.21): reference results from independent numpy code, the gradient with
+//! missing inputs, and flights of a known aircraft with fresh seeds.
 
 use nalgebra::{Complex, DMatrix, DVector, dmatrix};
 use serde_json::Value;
@@ -11,7 +11,7 @@ use gdcm_model::response::frequency_grid::log_spaced;
 use gdcm_model::simulation::{FirstOrderHold, FlightRecord};
 
 use super::identify::identify;
-use super::known_answers_tests::{matrix, number, response, response_at};
+use super::known_answers_tests::{matrix, number, numbers, response, response_at};
 use super::prepared_data::PreparedData;
 use super::real_flight_tests::Generator;
 use super::refined_known_answers_tests::{answers, flight_records, options, scaled_start, weighed};
@@ -22,20 +22,29 @@ use crate::likelihood::normal_equations::{EXACT, NormalEquations};
 use crate::likelihood::residual_noise::residual_noise;
 use crate::likelihood::schur_model::SchurModel;
 
-fn close(found: f64, expected: &Value, relative: f64) {
+/// Frequencies of the responses in the reference results \[rad/s\].
+const OMEGAS: [f64; 5] = [0.7, 1.5, 3.0, 6.0, 10.0];
+
+fn assert_relative(found: f64, expected: &Value, tolerance: f64) {
     let expected = number(expected);
     assert!(
-        (found / expected - 1.0).abs() < relative,
-        "{found} instead of {expected}"
+        (found / expected - 1.0).abs() < tolerance,
+        "{found}, expected {expected}"
     );
 }
 
+/// Returns the ratio of the moduli \[dB\].
 fn decibels(found: Complex<f64>, expected: Complex<f64>) -> f64 {
     20.0 * (found / expected).norm().log10()
 }
 
-/// Returns the response of a model in record units at a frequency.
-fn in_units(data: &PreparedData, model: &SchurModel, omega: f64) -> DMatrix<Complex<f64>> {
+/// Returns the response of a model in scaled units, converted to record units, at a frequency
+/// \[rad/s\].
+fn response_in_record_units(
+    data: &PreparedData,
+    model: &SchurModel,
+    omega: f64,
+) -> DMatrix<Complex<f64>> {
     let scales = &data.scales;
     let mut response = model.response(omega);
     for (output, scale) in scales.outputs.iter().enumerate() {
@@ -48,11 +57,11 @@ fn in_units(data: &PreparedData, model: &SchurModel, omega: f64) -> DMatrix<Comp
 }
 
 #[test]
-fn a_record_with_a_gap_has_the_known_cost_noise_and_minimum() {
+fn cost_noise_and_minimum_of_records_with_a_gap_match_independent_code() {
     let known = &answers()["gap"];
     let step = &known["step"];
     let tolerance = &step["tolerance"];
-    let exact = number(&tolerance["f_relative"]);
+    let cost_tolerance = number(&tolerance["f_relative"]);
     let progress = Shares::new(&Unobserved);
     let data = PreparedData::new(
         &flight_records(known),
@@ -66,11 +75,10 @@ fn a_record_with_a_gap_has_the_known_cost_noise_and_minimum() {
         data.likelihood.freedom(fit.order()) as f64,
         number(&step["dof"])
     );
-    close(fit.cost, &step["f_lpm_noise"], exact);
+    assert_relative(fit.cost, &step["f_lpm_noise"], cost_tolerance);
 
     let noise = residual_noise(&data.likelihood, &fit.model, &fit.parts).unwrap();
-    let omegas = [0.7, 1.5, 3.0, 6.0, 10.0];
-    for (omega, expected) in omegas.into_iter().zip(response(&step["noise_from_start"])) {
+    for (omega, expected) in OMEGAS.into_iter().zip(response(&step["noise_from_start"])) {
         let mut found = noise.at(omega);
         for (o, scale) in data.scales.outputs.iter().enumerate() {
             found.row_mut(o).scale_mut(*scale);
@@ -85,16 +93,18 @@ fn a_record_with_a_gap_has_the_known_cost_noise_and_minimum() {
 
     let likelihood = weighed(&data, &noise);
     let start = Fit::start(&likelihood, fit.model).unwrap();
-    close(start.cost, &step["f_start"], exact);
-    // The reference sums V^H V over bins but the nuisance columns over lines, which with hats lowers
-    // its decrement by a sixth; ours is that of the columns of the Jacobian (`normal_equations`).
+    assert_relative(start.cost, &step["f_start"], cost_tolerance);
+    // The reference approximates the normal equations (it sums V^H V over bins, but the columns of
+    // transients and hats over lines), which lowers its decrement by a sixth. The decrement here is
+    // that of the exact Jacobian (`normal_equations`).
     let decrement = start.decrement(&likelihood).unwrap();
-    close(decrement, &step["decrement_start_over_k_phi"], 0.2);
+    assert_relative(decrement, &step["decrement_start_over_k_phi"], 0.2);
     let fit = start
         .descended(&likelihood, Limits::to(CONVERGED), &progress)
         .unwrap();
     let minimum = number(&step["f_minimum"]);
-    // Another minimum than that of the independent code is allowed if it is no worse.
+    // A minimum other than that of the independent code is allowed if it is not higher; responses
+    // are compared only at the same minimum.
     assert!(fit.cost < minimum * (1.0 + 1e-3), "{}", fit.cost);
     if (fit.cost / minimum - 1.0).abs() < number(&tolerance["f_minimum_relative"]) {
         let sds: Vec<DMatrix<f64>> = known["whole"]["sd_db"]
@@ -104,8 +114,8 @@ fn a_record_with_a_gap_has_the_known_cost_noise_and_minimum() {
             .map(matrix)
             .collect();
         let expected = response(&step["H"]);
-        for ((omega, expected), sd) in omegas.into_iter().zip(expected).zip(sds) {
-            let found = in_units(&data, &fit.model, omega);
+        for ((omega, expected), sd) in OMEGAS.into_iter().zip(expected).zip(sds) {
+            let found = response_in_record_units(&data, &fit.model, omega);
             for (pair, sd) in sd.iter().enumerate() {
                 let difference = decibels(found[pair], expected[pair]);
                 assert!(
@@ -118,25 +128,27 @@ fn a_record_with_a_gap_has_the_known_cost_noise_and_minimum() {
 }
 
 #[test]
-fn records_with_a_gap_are_identified_as_the_known_answers_demand() {
+fn records_with_a_gap_are_identified_as_by_independent_code() {
     let known = &answers()["gap"];
     let whole = &known["whole"];
     let records = flight_records(known);
     let found = identify(&records, &options(known), &Sequential, &Unobserved).unwrap();
     let model = state_space(&found);
     let order = model.a().nrows() as f64;
-    let range = super::known_answers_tests::numbers(&whole["order_range"]);
+    let range = numbers(&whole["order_range"]);
     assert!((range[0]..=range[1]).contains(&order), "order {order}");
-    let contradicts = found
-        .cautions
-        .iter()
-        .any(|caution| matches!(caution, IdentificationCaution::Contradiction { .. }));
-    assert!(!contradicts, "{:?}", found.contrasts);
+    for caution in &found.cautions {
+        assert!(
+            !matches!(caution, IdentificationCaution::Contradiction { .. }),
+            "the records should not contradict one another: {:?}",
+            found.contrasts
+        );
+    }
     let mut within_truth = 0;
     let mut entries = 0;
     let truth = response(&known["truth"]["H"]);
     let expected = response(&whole["H"]);
-    for (place, omega) in [0.7, 1.5, 3.0, 6.0, 10.0].into_iter().enumerate() {
+    for (place, omega) in OMEGAS.into_iter().enumerate() {
         let response = response_at(model, omega);
         let sd_db = matrix(&whole["sd_db"][place]);
         for (pair, sd) in sd_db.iter().enumerate() {
@@ -153,7 +165,7 @@ fn records_with_a_gap_are_identified_as_the_known_answers_demand() {
     }
     assert!(
         20 * within_truth >= 19 * entries,
-        "{within_truth} of {entries}"
+        "{within_truth} of {entries} responses are within three standard deviations of the truth"
     );
 }
 
@@ -165,7 +177,7 @@ fn state_space(found: &Identification) -> &StateSpace {
     }
 }
 
-/// Computes `J` after a step in an entry of `[[A, B], [C, D]]`.
+/// Computes J after a step in an entry of `[[A, B], [C, D]]`.
 fn cost_after(
     likelihood: &Likelihood,
     model: &SchurModel,
@@ -179,17 +191,19 @@ fn cost_after(
 }
 
 #[test]
-fn the_gradient_is_that_of_the_cost_with_missing_inputs_and_outputs() {
+fn the_gradient_with_missing_inputs_and_outputs_agrees_with_difference_quotients() {
     let known = &answers()["gap"];
     let mut records = flight_records(known);
     for record in &mut records {
-        // The outputs miss 0.6 s from 30 s on; the first input 0.8 s from 45 s on.
+        // In the file, the outputs lack 0.6 s from 30 s on; here, the first input also lacks 0.8 s
+        // from 45 s on.
         record.inputs.view_mut((1125, 0), (20, 1)).fill(f64::NAN);
     }
     let progress = Shares::new(&Unobserved);
     let data = PreparedData::new(&records, &options(known), &Sequential, &progress).unwrap();
     assert_eq!(data.likelihood.segments.len(), records.len());
-    // Hats: ceil(2 16 0.64 / pi) in each output, ceil(2 16 0.84 / pi) in the input.
+    // Number of hats (M14.21): ceil(2 w (gap + dt) / pi) with lines up to w = 16 rad/s and
+    // dt = 0.04 s; the gaps are 0.6 s in the two outputs and 0.8 s in the input.
     assert_eq!(data.likelihood.segments[0].hats.len(), 2 * 7 + 9);
     let model = scaled_start(&known["step"], &data);
     let parts = data.likelihood.parts(&model).unwrap();
@@ -215,18 +229,18 @@ fn the_gradient_is_that_of_the_cost_with_missing_inputs_and_outputs() {
         let found = system.gradient[entry.1 * rows + entry.0];
         assert!(
             (found - expected).abs() < 1e-6 * largest,
-            "{entry:?}: {found} instead of {expected}, largest {largest}"
+            "{entry:?}: {found}, expected {expected}; largest entry {largest}"
         );
     }
 }
 
-/// Frequencies at which fresh flights are compared with the truth.
+/// Band of the fresh flights \[rad/s\], in which they are compared with the truth.
 const BAND: [f64; 2] = [0.5, 12.0];
 /// Sample time of fresh flights \[s\].
 const SAMPLE_TIME_S: f64 = 0.04;
 
-/// Returns a lateral aircraft, states beta, p, r, phi and two actuators; inputs LAT, PED, outputs P,
-/// R.
+/// Returns a lateral aircraft with the inputs LAT and PED and the outputs P and R; the states are
+/// beta, p, r, phi and two actuators.
 fn lateral_aircraft() -> StateSpace {
     StateSpace::new(
         dmatrix![
@@ -250,9 +264,10 @@ fn fresh_flights(seed: u64) -> Vec<FlightRecord> {
 }
 
 fn fresh_flight(seed: u64, flight: usize) -> FlightRecord {
-    const FINER: usize = 10;
+    // Simulated at 250 Hz, logged at 25 Hz.
+    const SUBSTEPS: usize = 10;
     const SAMPLES: usize = 1650;
-    let step_s = SAMPLE_TIME_S / FINER as f64;
+    let step_s = SAMPLE_TIME_S / SUBSTEPS as f64;
     let aircraft = lateral_aircraft();
     let feedback = dmatrix![0.04, 0.0; 0.0, -0.08];
     // Inputs of the closed loop: sweeps, then accelerations in roll and yaw by gusts.
@@ -270,13 +285,16 @@ fn fresh_flight(seed: u64, flight: usize) -> FlightRecord {
 
     let mut random = Generator::new(1000 * seed + flight as u64);
     let mut disturbances = [0.0; 4];
+    // Remnant and gusts have a correlation time of 1 s; the sweep goes from 0.4 to 14 rad/s in 62
+    // s.
     let memory = (-step_s).exp();
     let growth = (14.0_f64 / 0.4).ln() / 62.0;
-    let mut driven = DMatrix::zeros(FINER * SAMPLES, 4);
-    for n in 0..FINER * SAMPLES {
+    let mut driven = DMatrix::zeros(SUBSTEPS * SAMPLES, 4);
+    for n in 0..SUBSTEPS * SAMPLES {
         let time = n as f64 * step_s;
         for (channel, disturbance) in disturbances.iter_mut().enumerate() {
-            let size = if channel < 2 { 0.05 } else { 1.0 };
+            let is_stick = channel < 2;
+            let size = if is_stick { 0.05 } else { 1.0 };
             *disturbance =
                 memory * *disturbance + size * (1.0 - memory * memory).sqrt() * random.normal();
             driven[(n, channel)] = *disturbance;
@@ -291,9 +309,9 @@ fn fresh_flight(seed: u64, flight: usize) -> FlightRecord {
     FlightRecord {
         name: format!("flight {flight}"),
         time_s: (0..SAMPLES).map(|n| n as f64 * SAMPLE_TIME_S).collect(),
-        inputs: DMatrix::from_fn(SAMPLES, 2, |n, i| simulated[(n * FINER, i)]),
+        inputs: DMatrix::from_fn(SAMPLES, 2, |n, i| simulated[(n * SUBSTEPS, i)]),
         outputs: DMatrix::from_fn(SAMPLES, 2, |n, o| {
-            simulated[(n * FINER, 2 + o)] + 0.02 * random.normal()
+            simulated[(n * SUBSTEPS, 2 + o)] + 0.02 * random.normal()
         }),
     }
 }
@@ -354,11 +372,21 @@ fn mean_square_error(records: &[FlightRecord]) -> f64 {
 }
 
 #[test]
-fn a_gap_in_all_channels_is_refined_from_its_pieces_as_well() {
-    // From the proposed models alone the error is above 1 dB.
+fn refinement_with_missing_inputs_also_starts_from_the_cut_records() {
+    // With the proposed models as the only start, the error is above 1 dB (M14.21: two starts).
     let records = with_gap(&fresh_flights(5213), Missing::AllChannels, 0.6);
     let error = mean_square_error(&records).sqrt();
     assert!(error < 0.7, "{error}");
+}
+
+/// Returns the root of the mean of mean square errors.
+fn pooled(squares: &[f64]) -> f64 {
+    (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
+}
+
+/// Returns the root of the largest mean square error.
+fn worst(squares: &[f64]) -> f64 {
+    squares.iter().copied().fold(0.0, f64::max).sqrt()
 }
 
 /// Measures how a gap raises the error of the model, over fresh flights with a known truth.
@@ -385,8 +413,6 @@ fn gaps_hardly_raise_the_error() {
             split[case].push(mean_square_error(&cut(&records, seconds)));
         }
     }
-    let pooled = |squares: &[f64]| (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
-    let worst = |squares: &[f64]| squares.iter().copied().fold(0.0, f64::max).sqrt();
     println!("no gap: {:.3} ({:.3}) dB", pooled(&whole), worst(&whole));
     for (case, (missing, seconds)) in cases.into_iter().enumerate() {
         let ratios: Vec<f64> = with_gaps[case]
@@ -395,13 +421,17 @@ fn gaps_hardly_raise_the_error() {
             .map(|(gap, whole)| (gap / whole).sqrt())
             .collect();
         println!(
-            "{missing:?} {seconds} s: {:.3} ({:.3}) dB, ratios {ratios:.2?}; split {:.3} ({:.3}) dB",
+            "{missing:?} {seconds} s: {:.3} ({:.3}) dB, ratios {ratios:.2?}; \
+             split {:.3} ({:.3}) dB",
             pooled(&with_gaps[case]),
             worst(&with_gaps[case]),
             pooled(&split[case]),
             worst(&split[case]),
         );
         let ratio = pooled(&with_gaps[case]) / pooled(&whole);
-        assert!(ratio < 1.5, "{missing:?} {seconds} s: {ratio}");
+        assert!(
+            ratio < 1.5,
+            "{missing:?} {seconds} s: the error is {ratio} times that without a gap"
+        );
     }
 }

@@ -1,5 +1,5 @@
-//! Reference results for the tests of this module: synthetic systems, computed by independent numpy
-//! code.
+//! Reference results for the tests of identification: synthetic systems, computed by independent
+//! numpy code. Functions that read the files of results.
 
 use nalgebra::{Complex, DMatrix};
 use serde_json::Value;
@@ -49,25 +49,20 @@ pub(crate) fn response(value: &Value) -> Vec<DMatrix<Complex<f64>>> {
 
 /// Reads the lines of all records of a case, with noise of unit variance.
 pub(crate) fn known_records(known: &Value) -> Likelihood<'static> {
-    let segments =
-        known["records"]
-            .as_array()
-            .unwrap()
-            .iter()
-            .enumerate()
-            .map(|(record, known)| {
-                let spectrum = Spectrum {
-                    record,
-                    duration_s: number(&known["T"]),
-                    omega: numbers(&known["w"]),
-                    inputs: complex_matrix(&known["U"]).transpose(),
-                    outputs: complex_matrix(&known["Y"]).transpose(),
-                    hats: Vec::new(),
-                };
-                let weights = vec![DMatrix::identity(2, 2); spectrum.omega.len()];
-                SpectralLines::weighted(&spectrum, weights)
-            });
-    Likelihood::new(segments.collect(), &Sequential)
+    let mut segments = Vec::new();
+    for (record, known) in known["records"].as_array().unwrap().iter().enumerate() {
+        let spectrum = Spectrum {
+            record,
+            duration_s: number(&known["T"]),
+            omega: numbers(&known["w"]),
+            inputs: complex_matrix(&known["U"]).transpose(),
+            outputs: complex_matrix(&known["Y"]).transpose(),
+            hats: Vec::new(),
+        };
+        let weights = vec![DMatrix::identity(2, 2); spectrum.omega.len()];
+        segments.push(SpectralLines::weighted(&spectrum, weights));
+    }
+    Likelihood::new(segments, &Sequential)
 }
 
 /// Evaluates the response of a model at a frequency \[rad/s\].

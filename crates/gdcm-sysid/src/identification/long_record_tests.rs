@@ -1,4 +1,4 @@
-//! Records that are logged fast, long or many (M14.24): the samples that are used.
+//! The samples and lines that are used of a record that is logged fast (M14.24).
 
 use nalgebra::DMatrix;
 
@@ -11,7 +11,8 @@ use super::real_flight_tests::Generator;
 use super::{Options, Preparation};
 use crate::spectra::spectrum::LineRange;
 
-/// Returns records without dynamics: sweeps and noise, each output a smoothed mixture of inputs.
+/// Returns records of sweeps and noise; each output is a mixture of two inputs through a lag, with
+/// measurement noise.
 fn records(
     count: usize,
     channels: [usize; 2],
@@ -60,7 +61,8 @@ fn options(channels: [usize; 2]) -> Options {
 }
 
 #[test]
-fn a_record_logged_fast_has_all_its_lines_and_thinned_projections() {
+fn a_record_logged_fast_is_thinned_for_the_projections_and_keeps_its_lines() {
+    // A minute at 250 Hz. Every fourth sample is sufficient for the projections.
     let records = records(1, [2, 2], 15_000, 0.004);
     let options = options([2, 2]);
     let progress = Shares::new(&Unobserved);

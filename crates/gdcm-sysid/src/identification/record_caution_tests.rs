@@ -1,5 +1,5 @@
-//! Spikes and rate limits in synthetic records with fresh seeds (M14.24), and cautions in other
-//! units.
+//! Cautions about spikes and rate limits in synthetic records (M14.24), and cautions in other
+//! units. The seeds were used for nothing else.
 
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
@@ -12,7 +12,7 @@ use gdcm_model::simulation::FlightRecord;
 
 use super::IdentificationCaution;
 use super::identify::identify;
-use super::real_flight_tests::{Flown, Generator, codes, known, options};
+use super::real_flight_tests::{Generator, SyntheticFlight, codes, options, reference_results};
 use crate::spectra::preparation::prepare;
 use crate::spectra::record_cautions::RecordCaution;
 
@@ -36,22 +36,24 @@ fn record_codes(records: &[FlightRecord]) -> Vec<&'static str> {
         .collect()
 }
 
+/// Simulates a calm flight with this standard deviation of the measurement noise.
 fn flight(seed: u64, noise: f64) -> FlightRecord {
-    Flown {
+    SyntheticFlight {
         noise,
-        ..Flown::calm(seed, 0)
+        ..SyntheticFlight::calm(seed, 0)
     }
-    .record(&known())
+    .record(&reference_results())
     .0
 }
 
+/// Returns the standard deviation.
 fn deviation(values: &[f64]) -> f64 {
     let mean = values.iter().sum::<f64>() / values.len() as f64;
     (values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt()
 }
 
-/// Adds `count` spikes of `size` standard deviations and `length` samples to the output, and
-/// returns their first stamps.
+/// Adds spikes of random sign to the output, evenly spaced except for a few samples, and returns
+/// the times at which they begin \[s\].
 fn add_spikes(record: &mut FlightRecord, random: &mut Generator, spikes: SpikeSeries) -> Vec<f64> {
     let size = spikes.size * deviation(record.outputs.as_slice());
     let mut times = Vec::new();
@@ -67,6 +69,7 @@ fn add_spikes(record: &mut FlightRecord, random: &mut Generator, spikes: SpikeSe
     times
 }
 
+/// Equal spikes.
 #[derive(Clone, Copy)]
 struct SpikeSeries {
     count: usize,
@@ -77,7 +80,7 @@ struct SpikeSeries {
 }
 
 #[test]
-fn spikes_are_named_with_channel_times_and_size() {
+fn spikes_are_reported_with_channel_times_and_size() {
     for length in 1..=3 {
         let mut record = flight(70_000 + length as u64, 0.02);
         let series = SpikeSeries {
@@ -96,7 +99,7 @@ fn spikes_are_named_with_channel_times_and_size() {
             },
         ] = &cautions[..]
         else {
-            panic!("{length}: {cautions:?}");
+            panic!("spikes of {length} samples: {cautions:?}");
         };
         assert_eq!((signal.name.as_str(), times_s), ("Q", &times));
         assert!((deviations - 5.0).abs() < 0.5, "{deviations}");
@@ -104,7 +107,7 @@ fn spikes_are_named_with_channel_times_and_size() {
 }
 
 #[test]
-fn a_spike_is_no_wrong_unit_and_hides_no_limit() {
+fn a_spike_is_not_taken_for_a_wrong_unit_and_does_not_hide_clipping() {
     let mut record = flight(70_010, 0.02);
     let limit = 1.2 * deviation(record.outputs.as_slice());
     record.outputs.apply(|y| *y = y.clamp(-limit, limit));
@@ -114,7 +117,7 @@ fn a_spike_is_no_wrong_unit_and_hides_no_limit() {
 
 #[test]
 fn spikes_are_not_taken_for_another_fault() {
-    // Without the caution about spikes: `reweighed` and `record`.
+    // Without the caution about spikes, the cautions would be `reweighed` and `record`.
     let mut records: Vec<FlightRecord> = (0..3).map(|at| flight(73_000 + at, 0.3)).collect();
     let series = SpikeSeries {
         count: 3,
@@ -124,15 +127,17 @@ fn spikes_are_not_taken_for_another_fault() {
     add_spikes(&mut records[1], &mut Generator::new(0), series);
     let found = identify(&records, &options(), &Sequential, &Unobserved).unwrap();
     assert_eq!(codes(&found), ["spike"]);
-    // A record that is late as well keeps that caution.
-    records[1] = Flown::calm(73_001, 4).record(&known()).0;
+    // A record that is late as well raises both cautions.
+    records[1] = SyntheticFlight::calm(73_001, 4)
+        .record(&reference_results())
+        .0;
     add_spikes(&mut records[1], &mut Generator::new(0), series);
     let found = identify(&records, &options(), &Sequential, &Unobserved).unwrap();
     assert_eq!(codes(&found), ["spike", "time-skew"]);
 }
 
 #[test]
-fn steps_pulses_and_binary_sequences_are_no_spikes() {
+fn steps_pulses_and_binary_sequences_are_not_taken_for_spikes() {
     for (name, command) in commands(70_020) {
         let record = commanded(command);
         let codes = record_codes(&[record]);
@@ -174,7 +179,8 @@ fn measure_spikes_over_many_seeds() {
             }
         }
     }
-    // The cautions about whole flights with spikes.
+    // Models of flights with spikes in one of three records: their error stays small, and the
+    // caution is raised.
     for (count, size) in [
         (1, 5.0),
         (3, 5.0),
@@ -246,8 +252,8 @@ fn limited(command: &[f64], rate: f64) -> Vec<f64> {
     let mut position = command[0];
     let mut limited = Vec::with_capacity(command.len());
     for target in command {
-        let most = rate * STEP_S;
-        position += (target - position).clamp(-most, most);
+        let limit = rate * STEP_S;
+        position += (target - position).clamp(-limit, limit);
         limited.push(position);
     }
     limited
@@ -277,39 +283,40 @@ fn log_sweep(random: &mut Generator, remnant: f64) -> Vec<f64> {
     })
 }
 
+/// Returns noise that is filtered by the pole; 0 is white noise.
+fn filtered_noise(random: &mut Generator, pole: f64) -> Vec<f64> {
+    let mut value = 0.0;
+    let mut noise = Vec::with_capacity(SAMPLES);
+    for _ in 0..SAMPLES {
+        value = pole * value + random.normal();
+        noise.push(value);
+    }
+    noise
+}
+
 /// Returns commands without a rate limit and without spikes, with their names.
 fn commands(seed: u64) -> Vec<(&'static str, Vec<f64>)> {
     let mut random = Generator::new(seed);
     let phases: Vec<f64> = (0..20).map(|_| TAU * random.normal()).collect();
+    // A binary sequence with a bit of ten samples, one of single samples, and the first filtered by
+    // a lag.
     let mut bit = 1.0;
-    let mut slow = 0.0;
-    let prbs: Vec<f64> = (0..SAMPLES)
-        .map(|k| {
-            if k % 10 == 0 {
-                bit = random.normal().signum();
-            }
-            bit
-        })
-        .collect();
+    let mut prbs: Vec<f64> = Vec::with_capacity(SAMPLES);
+    for k in 0..SAMPLES {
+        if k % 10 == 0 {
+            bit = random.normal().signum();
+        }
+        prbs.push(bit);
+    }
     let fast_prbs: Vec<f64> = (0..SAMPLES).map(|_| random.normal().signum()).collect();
-    let filtered_prbs = prbs
-        .iter()
-        .map(|bit| {
-            slow += 0.2 * (bit - slow);
-            slow
-        })
-        .collect();
-    let noise_of = |random: &mut Generator, pole: f64| {
-        let mut value = 0.0;
-        (0..SAMPLES)
-            .map(|_| {
-                value = pole * value + random.normal();
-                value
-            })
-            .collect::<Vec<f64>>()
-    };
+    let mut lag: f64 = 0.0;
+    let mut filtered_prbs: Vec<f64> = Vec::with_capacity(SAMPLES);
+    for bit in &prbs {
+        lag += 0.2 * (bit - lag);
+        filtered_prbs.push(lag);
+    }
     let clean = log_sweep(&mut random, 0.0);
-    let flown = log_sweep(&mut random, 0.05);
+    let with_remnant = log_sweep(&mut random, 0.05);
     let doublet = levels(&[(10.0, 1.0), (11.0, -1.0), (12.0, 0.0)]);
     let series = levels(&[
         (10.0, 1.0),
@@ -320,7 +327,7 @@ fn commands(seed: u64) -> Vec<(&'static str, Vec<f64>)> {
     ]);
     vec![
         ("logarithmic sweep", clean.clone()),
-        ("logarithmic sweep with remnant", flown.clone()),
+        ("logarithmic sweep with remnant", with_remnant),
         ("rounded sweep", rounded(&clean, 0.01)),
         ("coarsely rounded sweep", rounded(&clean, 0.05)),
         (
@@ -357,14 +364,11 @@ fn commands(seed: u64) -> Vec<(&'static str, Vec<f64>)> {
             "triangles",
             tabulate(|time| ((0.5 * time).fract() - 0.5).abs()),
         ),
-        ("coloured noise", noise_of(&mut random, 0.95)),
-        ("white noise", noise_of(&mut random, 0.0)),
+        ("coloured noise", filtered_noise(&mut random, 0.95)),
+        ("white noise", filtered_noise(&mut random, 0.0)),
         (
-            "held coloured noise",
-            noise_of(&mut random, 0.95)
-                .iter()
-                .enumerate()
-                .map(|(k, _)| k)
+            "sine of 0.3 Hz, held for three samples",
+            (0..SAMPLES)
                 .map(|k| (TAU * 0.3 * STEP_S * (k - k % 3) as f64).sin())
                 .collect(),
         ),
@@ -372,7 +376,7 @@ fn commands(seed: u64) -> Vec<(&'static str, Vec<f64>)> {
 }
 
 #[test]
-fn commands_without_a_rate_limit_raise_no_caution_about_one() {
+fn commands_without_a_rate_limit_raise_no_caution_about_rates() {
     for seed in 0..3 {
         for (name, command) in commands(74_000 + seed) {
             let codes = record_codes(&[commanded(command)]);
@@ -382,7 +386,7 @@ fn commands_without_a_rate_limit_raise_no_caution_about_one() {
 }
 
 #[test]
-fn a_rate_limited_sweep_is_named_with_its_rate_and_share() {
+fn a_rate_limited_sweep_is_reported_with_its_rate_and_share() {
     let sweep = log_sweep(&mut Generator::new(75_000), 0.0);
     let rate = 0.4 * steepest(&sweep);
     let limited = limited(&sweep, rate);
@@ -390,6 +394,7 @@ fn a_rate_limited_sweep_is_named_with_its_rate_and_share() {
         .windows(2)
         .filter(|pair| ((pair[1] - pair[0]).abs() / STEP_S / rate - 1.0).abs() < 1e-6)
         .count();
+    // The reported share is that of the moving samples; the expected one is that of all samples.
     let cautions = record_cautions(&[commanded(limited.clone())]);
     let [
         RecordCaution::RateLimited {
@@ -406,7 +411,10 @@ fn a_rate_limited_sweep_is_named_with_its_rate_and_share() {
     assert_eq!((signal.name.as_str(), *records), ("LON", 1));
     assert!((found / rate - 1.0).abs() < 0.01, "{found}");
     let share = 100.0 * at_rate as f64 / limited.len() as f64;
-    assert!((percent / share - 1.0).abs() < 0.2, "{percent}, {share}");
+    assert!(
+        (percent / share - 1.0).abs() < 0.2,
+        "{percent} % of the samples are reported, {share} % are at the limit"
+    );
 }
 
 #[test]
@@ -424,6 +432,7 @@ fn measure_rate_limits_over_many_seeds() {
     }
     println!("false alarms: {} of {count}: {alarms:?}", alarms.len());
     assert!(alarms.is_empty(), "{alarms:?}");
+    // Name, remnant, step of rounding, and noise, relative to the amplitude of the sweep.
     let kinds: [(&str, f64, f64, f64); 5] = [
         ("clean", 0.0, 0.0, 0.0),
         ("remnant 5 %", 0.05, 0.0, 0.0),
@@ -448,16 +457,20 @@ fn measure_rate_limits_over_many_seeds() {
                     *u += noise * random.normal();
                 }
                 for caution in record_cautions(&[commanded(command)]) {
-                    if let RecordCaution::RateLimited { rate: own, .. } = caution {
+                    if let RecordCaution::RateLimited {
+                        rate: found_rate, ..
+                    } = caution
+                    {
                         found += 1;
-                        worst = worst.max((own / rate - 1.0).abs());
+                        worst = worst.max((found_rate / rate - 1.0).abs());
                     }
                 }
             }
             println!(
                 "{name}: limit at {fraction} of the steepest: {found} of 50, rate within {worst:.4}"
             );
-            // A limit that few samples reach is not named, a clean one always and exactly.
+            // A limit that few samples reach is not reported; one that many samples of a clean
+            // sweep reach is always reported, with its rate within 1 %.
             assert!(fraction < 0.8 || found == 0, "{name} {fraction}: {found}");
             if name == "clean" && fraction < 0.8 {
                 assert!(found == 50 && worst < 0.01, "{fraction}: {found} {worst}");
@@ -475,7 +488,7 @@ fn in_other_units(record: &FlightRecord, input: f64, output: f64) -> FlightRecor
     }
 }
 
-/// Returns a caution without the figures that have units.
+/// Returns a caution with all figures that have units set to zero.
 fn without_units(mut caution: RecordCaution) -> RecordCaution {
     if let RecordCaution::RateLimited { rate, .. } = &mut caution {
         *rate = 0.0;
@@ -506,20 +519,21 @@ fn cautions_about_records_do_not_depend_on_units() {
         (coarse, "coarse"),
         (slow, "rate-limited"),
     ] {
-        let here = record_cautions(std::slice::from_ref(&record));
+        let cautions = record_cautions(std::slice::from_ref(&record));
         let codes = record_codes(std::slice::from_ref(&record));
         assert!(codes.contains(&code), "{codes:?}");
-        // Powers of two keep every digit.
+        // Multiplication by powers of two is exact: all figures are the same.
         for (input, output) in [(1024.0, 1.0 / 4096.0), (-0.125, -512.0)] {
-            let there = record_cautions(&[in_other_units(&record, input, output)]);
-            let found: Vec<RecordCaution> = there.into_iter().map(without_units).collect();
-            let expected: Vec<RecordCaution> = here.iter().cloned().map(without_units).collect();
+            let scaled = record_cautions(&[in_other_units(&record, input, output)]);
+            let found: Vec<RecordCaution> = scaled.into_iter().map(without_units).collect();
+            let expected: Vec<RecordCaution> =
+                cautions.iter().cloned().map(without_units).collect();
             assert_eq!(found, expected);
         }
-        // Other factors round.
+        // Other factors round (57.3 deg a rad, 0.3048 m a foot): the same cautions are raised.
         for (input, output) in [(57.295_779_513, 0.3048), (1e-6, 1e9)] {
-            let there = in_other_units(&record, input, output);
-            assert_eq!(record_codes(&[there]), codes);
+            let scaled = in_other_units(&record, input, output);
+            assert_eq!(record_codes(&[scaled]), codes);
         }
     }
 }
@@ -527,34 +541,40 @@ fn cautions_about_records_do_not_depend_on_units() {
 #[test]
 fn cautions_about_models_do_not_depend_on_units() {
     let gusty = |seed| {
-        Flown {
+        SyntheticFlight {
             gust: 1.0,
-            amp: 0.5,
+            amplitude: 0.5,
             noise: 0.02,
             feedback: 0.15,
-            ..Flown::calm(seed, 0)
+            ..SyntheticFlight::calm(seed, 0)
         }
-        .record(&known())
+        .record(&reference_results())
         .0
     };
-    let late = |seed, late| Flown::calm(seed, late).record(&known()).0;
+    let late = |seed, late| {
+        SyntheticFlight::calm(seed, late)
+            .record(&reference_results())
+            .0
+    };
+    // Flights with feedback, and flights of which the last is logged four samples late.
     let flights: [Vec<FlightRecord>; 2] = [
         (0..4).map(|at| gusty(100 + at)).collect(),
         vec![late(78_010, 0), late(78_011, 0), late(78_012, 4)],
     ];
     for records in flights {
-        let here = identify(&records, &options(), &Sequential, &Unobserved).unwrap();
-        assert!(!here.cautions.is_empty());
+        let found = identify(&records, &options(), &Sequential, &Unobserved).unwrap();
+        assert!(!found.cautions.is_empty());
         let scaled: Vec<FlightRecord> = records
             .iter()
             .map(|record| in_other_units(record, 57.295_779_513, 0.3048))
             .collect();
-        let there = identify(&scaled, &options(), &Sequential, &Unobserved).unwrap();
-        assert_eq!(codes(&there), codes(&here));
-        for (a, b) in there.contrasts.iter().zip(&here.contrasts) {
-            assert!((a.contrast / b.contrast - 1.0).abs() < 1e-3);
+        let in_units = identify(&scaled, &options(), &Sequential, &Unobserved).unwrap();
+        assert_eq!(codes(&in_units), codes(&found));
+        // Rounding may end the descents at slightly different points.
+        for (scaled, original) in in_units.contrasts.iter().zip(&found.contrasts) {
+            assert!((scaled.contrast / original.contrast - 1.0).abs() < 1e-3);
         }
-        let shares = [&there, &here].map(|found| found.feedback.as_ref().unwrap().share);
+        let shares = [&in_units, &found].map(|found| found.feedback.as_ref().unwrap().share);
         assert!((shares[0] / shares[1] - 1.0).abs() < 1e-3);
     }
 }

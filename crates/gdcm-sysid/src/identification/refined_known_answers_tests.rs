@@ -1,5 +1,5 @@
-//! Known answers for the refinement (M14.19 to M14.22): simulated flights, computed by independent
-//! numpy code. Tolerances stand in the file.
+//! Reference results for the refinement (M14.19 to M14.22): simulated flights, computed by
+//! independent numpy code. Tolerances are in the file, unless a comment says otherwise.
 
 use nalgebra::{Complex, DMatrix};
 use serde_json::Value;
@@ -37,7 +37,7 @@ fn decode(text: &str) -> Vec<u8> {
     for group in text.trim_end_matches('=').as_bytes().chunks(4) {
         let mut bits = 0_u32;
         for letter in group {
-            let value = ALPHABET.iter().position(|own| own == letter).unwrap();
+            let value = ALPHABET.iter().position(|known| known == letter).unwrap();
             bits = (bits << 6) | value as u32;
         }
         bits <<= 6 * (4 - group.len());
@@ -109,12 +109,14 @@ pub(super) fn scaled_start(known: &Value, data: &PreparedData) -> SchurModel {
     SchurModel::from_state_space(&StateSpace::new(a, b, c, d).unwrap()).unwrap()
 }
 
+/// Weights the lines by a noise covariance.
 pub(super) fn weighed<'a>(data: &PreparedData, noise: &NoiseCovariance) -> Likelihood<'a> {
     let lines = |spectrum| SpectralLines::new(spectrum, noise).unwrap();
     Likelihood::new(data.spectra.iter().map(lines).collect(), &Sequential)
 }
 
-/// Asserts a complex matrix relative to the roots of its expected diagonal.
+/// Compares covariance matrices; the tolerance is relative to the standard deviations of row and
+/// column.
 fn assert_covariance(
     found: &DMatrix<Complex<f64>>,
     expected: &DMatrix<Complex<f64>>,
@@ -126,7 +128,7 @@ fn assert_covariance(
             let difference = (found[(row, column)] - expected[(row, column)]).norm();
             assert!(
                 difference < tolerance * scale,
-                "({row}, {column}): {}, not {}",
+                "({row}, {column}): {}, expected {}",
                 found[(row, column)],
                 expected[(row, column)]
             );
@@ -164,24 +166,32 @@ fn assert_steps(known: &Value) {
     let likelihood = weighed(&data, &noise);
     let fit = Fit::start(&likelihood, fit.model).unwrap();
     assert_relative(fit.cost, number(&step["f_start"]), relative);
-    // The reference sums V^H V over bins of 0.04 but the transients over lines, so that its
-    // decrement is up to 5 % below that of the exact normal equations (the file's 2 % hold for its
-    // own bins).
+    // The reference approximates the normal equations (it sums V^H V over bins of 0.04, but the
+    // transients over lines), so that its decrement is up to 5 % below that of the exact normal
+    // equations. The 2 % in the file are for these bins.
     let decrement = fit.decrement(&likelihood).unwrap();
     assert_relative(decrement, number(&step["decrement_start_over_k_phi"]), 0.06);
     let fit = fit
         .descended(&likelihood, Limits::to(CONVERGED), &progress)
         .unwrap();
-    // The minimum may be another, lower one.
+    // Another minimum is allowed if it is not higher.
     let minimum = number(&step["f_minimum"]);
-    assert!(fit.cost < minimum * (1.0 + 1e-3), "{} {minimum}", fit.cost);
+    assert!(
+        fit.cost < minimum * (1.0 + 1e-3),
+        "{}, expected {minimum}",
+        fit.cost
+    );
+    // Balanced truncation by two states.
     let reduced = without_last_states(&balanced(&likelihood, &fit.model), 2);
     let least = reduced
         .iter()
         .filter_map(|model| likelihood.cost(model))
         .fold(f64::INFINITY, f64::min);
     let truncated = number(&step["f_truncated_by_2"]);
-    assert!(least < truncated * (1.0 + 1e-3), "{least} {truncated}");
+    assert!(
+        least < truncated * (1.0 + 1e-3),
+        "{least}, expected {truncated}"
+    );
 }
 
 /// Returns a model in balanced coordinates.
@@ -195,12 +205,12 @@ fn balanced(likelihood: &Likelihood, model: &SchurModel) -> SchurModel {
 fn assert_relative(found: f64, expected: f64, tolerance: f64) {
     assert!(
         (found / expected - 1.0).abs() < tolerance,
-        "{found}, not {expected}"
+        "{found}, expected {expected}"
     );
 }
 
-/// Returns the records of the case with a gap, without the gap.
-fn whole() -> Value {
+/// Returns the case with a gap, with the samples of the gap and the results for whole records.
+fn case_without_gap() -> Value {
     let mut answers = answers();
     let mut known = answers["gap"].take();
     known["outputs_missing"] = Value::Null;
@@ -210,16 +220,17 @@ fn whole() -> Value {
 }
 
 #[test]
-fn steps_of_two_inputs_and_outputs_match_independent_code() {
-    assert_steps(&whole());
+fn refinement_steps_for_two_inputs_and_outputs_match_independent_code() {
+    assert_steps(&case_without_gap());
 }
 
 #[test]
-fn steps_of_a_helicopter_match_independent_code() {
+fn refinement_steps_for_a_helicopter_match_independent_code() {
     assert_steps(&answers()["helicopter"]);
 }
 
-/// Identifies the records of a case, and compares order, responses and their deviations.
+/// Identifies the records of a case, and compares the order, the responses and their standard
+/// deviations.
 fn assert_identified(known: &Value) {
     let found = identify(
         &flight_records(known),
@@ -238,9 +249,11 @@ fn assert_identified(known: &Value) {
     let truth = response(&known["truth"]["H"]);
     let reference = response(&expected["H"]);
     let tolerance = number(&expected["H_tolerance_in_sd"]);
+    // Differences from the reference in its standard deviations, and logarithms of the ratios of
+    // the standard deviations.
     let mut deviations = Vec::new();
     let mut ratios = Vec::new();
-    let mut held = 0;
+    let mut within_truth = 0;
     let mut count = 0;
     for (k, omega) in omegas.into_iter().enumerate() {
         let response = response_at(model, omega);
@@ -256,15 +269,20 @@ fn assert_identified(known: &Value) {
                 ratios.push((own_sd_db / sd_db[pair]).ln());
                 count += 1;
                 if db(truth[k][pair]).abs() < 3.0 * own_sd_db {
-                    held += 1;
+                    within_truth += 1;
                 }
             }
         }
     }
-    assert!(20 * held >= 19 * count, "{held} of {count}");
-    // Single responses of other minima and orders differ by more than the file's tolerance.
+    assert!(
+        20 * within_truth >= 19 * count,
+        "{within_truth} of {count} responses are within three standard deviations of the truth"
+    );
+    // The median: at another minimum or order, single responses differ by more than the tolerance
+    // in the file.
     assert!(median(&mut deviations) < tolerance, "{deviations:?}");
-    // The median ratio of the deviations: the nearest orders that enter it may be others.
+    // The standard deviations include the differences from models of neighbouring orders, which may
+    // be other orders than those of the independent code.
     assert!(median(&mut ratios).abs() < 0.25, "{ratios:?}");
     let codes: Vec<&str> = found
         .cautions
@@ -288,11 +306,11 @@ fn at_frequency(omegas: &[f64], values: &[f64], omega: f64) -> f64 {
 }
 
 #[test]
-fn two_inputs_and_outputs_are_identified_as_by_independent_code() {
-    assert_identified(&whole());
+fn records_of_two_inputs_and_outputs_are_identified_as_by_independent_code() {
+    assert_identified(&case_without_gap());
 }
 
 #[test]
-fn a_helicopter_is_identified_as_by_independent_code() {
+fn records_of_a_helicopter_are_identified_as_by_independent_code() {
     assert_identified(&answers()["helicopter"]);
 }

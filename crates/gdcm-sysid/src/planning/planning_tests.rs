@@ -1,5 +1,5 @@
-//! Predictions against theory, against the information of flights that are simulated afterwards,
-//! and against their identification.
+//! Predicted intervals compared with theory, with the information of flights that are simulated
+//! afterwards, and with the identification of these flights.
 
 use nalgebra::{DMatrix, DVector, dmatrix};
 
@@ -33,12 +33,12 @@ const BAND: [f64; 2] = [1.0, 12.0];
 const INPUTS: [&str; 3] = ["LON", "LAT", "PED"];
 const OUTPUTS: [&str; 4] = ["P", "Q", "R", "NZ"];
 
-/// An aircraft, and how it is flown.
+/// An aircraft with its feedback and its disturbances.
 struct Aircraft {
     model: StateSpace,
     /// Gains from outputs to inputs, inputs x outputs.
     feedback: DMatrix<f64>,
-    /// Standard deviation of the gusts, which last about a second, on each output.
+    /// Standard deviation of the gusts on each output; they are correlated over about a second.
     gusts: f64,
     /// Standard deviation of the measurement noise.
     noise: f64,
@@ -83,6 +83,7 @@ fn helicopter(random: &mut Generator) -> Aircraft {
     }
 }
 
+/// A sweep of one minute with the amplitude 1, a little wider than the band.
 fn sweep_of(input: usize) -> PlannedSweep {
     PlannedSweep {
         input,
@@ -94,8 +95,9 @@ fn sweep_of(input: usize) -> PlannedSweep {
 }
 
 impl Aircraft {
-    /// Flies a sweep: the inputs move a little more than the sweep and the feedback ask for.
-    fn flown(&self, sweep: &PlannedSweep, random: &mut Generator) -> FlightRecord {
+    /// Simulates a sweep. The inputs are the sweep, the feedback of the sample before, and a small
+    /// remnant.
+    fn fly(&self, sweep: &PlannedSweep, random: &mut Generator) -> FlightRecord {
         let samples = (sweep.length_s / STEP_S).round() as usize;
         let order = self.model.order();
         let (outputs_count, inputs_count) = self.model.d().shape();
@@ -153,36 +155,37 @@ impl Aircraft {
         identify(records, &options, &Sequential, &Unobserved).unwrap()
     }
 
-    /// Flies one sweep of each input.
-    fn first_flight(&self, random: &mut Generator) -> Vec<FlightRecord> {
+    /// Simulates one sweep of each input.
+    fn sweep_each_input(&self, random: &mut Generator) -> Vec<FlightRecord> {
         (0..self.inputs())
-            .map(|input| self.flown(&sweep_of(input), random))
+            .map(|input| self.fly(&sweep_of(input), random))
             .collect()
     }
 
-    /// Frequencies and responses at which predictions are compared.
-    fn places(&self) -> Vec<(Pair, f64)> {
-        let mut places = Vec::new();
+    /// Responses and frequencies \[rad/s\] at which predictions are compared.
+    fn comparison_points(&self) -> Vec<(Pair, f64)> {
+        let mut points = Vec::new();
         for omega in [1.0, 2.0, 3.5, 8.0] {
             for output in 0..self.model.outputs() {
                 for input in 0..self.inputs() {
-                    places.push((Pair { output, input }, omega));
+                    points.push((Pair { output, input }, omega));
                 }
             }
         }
-        places
+        points
     }
 }
 
 /// Identifies a first flight of the small aircraft.
 fn first_identification(seed: u64) -> Identification {
     let aircraft = small_aircraft(0.3);
-    let found = aircraft.identified(&aircraft.first_flight(&mut Generator::new(seed)));
+    let found = aircraft.identified(&aircraft.sweep_each_input(&mut Generator::new(seed)));
     assert!(found.information.is_some());
     found
 }
 
-/// Returns the variance of the logarithm of a response.
+/// Returns the variance of the logarithm of a response: real part for the magnitude, imaginary part
+/// for the phase.
 fn variance(
     planner: &FlightPlanner,
     after: &FactoredInformation,
@@ -203,21 +206,21 @@ fn changes_of_coordinates_change_neither_response_nor_cost() {
     let model = SchurModel::from_state_space(&information.model).unwrap();
     let changes = coordinate_changes(&model);
     let planner = FlightPlanner::new(information, &Sequential).unwrap();
-    for (pair, omega) in small_aircraft(0.3).places() {
+    for (pair, omega) in small_aircraft(0.3).comparison_points() {
         let gradient = planner.log_gradient(pair, omega);
-        let along = changes.tr_mul(&gradient);
-        assert!(along.amax() < 1e-10 * gradient.amax() * changes.amax());
+        let derivative = changes.tr_mul(&gradient);
+        assert!(derivative.amax() < 1e-10 * gradient.amax() * changes.amax());
     }
-    let along = &information.flown * &changes;
-    assert!(along.amax() < 1e-9 * information.flown.amax() * changes.amax());
+    let derivative = &information.flown * &changes;
+    assert!(derivative.amax() < 1e-9 * information.flown.amax() * changes.amax());
 }
 
 #[test]
 fn the_information_of_the_records_gives_the_bands_of_the_identification() {
     let aircraft = small_aircraft(0.3);
-    let records = aircraft.first_flight(&mut Generator::new(2));
+    let records = aircraft.sweep_each_input(&mut Generator::new(2));
     let options = Options {
-        // Without neighbouring orders.
+        // A single order: no differences from neighbouring orders enter the bands.
         orders: Some(vec![3]),
         ..Options::new(BAND, aircraft.preparation())
     };
@@ -225,24 +228,30 @@ fn the_information_of_the_records_gives_the_bands_of_the_identification() {
     let information = found.information.as_ref().unwrap();
     let planner = FlightPlanner::new(information, &Sequential).unwrap();
     let now = planner.after(&[]).unwrap();
-    for (pair, omega) in small_aircraft(0.3).places() {
+    for (pair, omega) in small_aircraft(0.3).comparison_points() {
         let variance = variance(&planner, &now, pair, omega);
         let fed_back = match &found.feedback {
             Some(feedback) => feedback.ratio(omega, (pair.output, pair.input)),
             None => 0.0,
         };
+        // The bands contain a factor of 2 in the variance, and the part of the response that is fed
+        // back (M14.17).
         let sd = (2.0 * variance.re + 0.5 * fed_back.powi(2)).sqrt();
         let interval = planner.interval_now(pair, omega);
         let ratio = neper_to_db(sd) * TWO_SIDED_95 / interval.half_db;
-        // The bands are interpolated, and use a dispersion below 1 as it is.
-        assert!((ratio - 1.0).abs() < 0.03, "{pair:?} {omega}: {ratio}");
+        // The tolerance covers the interpolation of the bands, which also accept a dispersion below
+        // 1.
+        assert!(
+            (ratio - 1.0).abs() < 0.03,
+            "{pair:?} at {omega} rad/s: {ratio}"
+        );
     }
 }
 
 #[test]
 fn repeats_and_amplitudes_divide_the_variance_of_the_planned_sweeps() {
     let found = first_identification(3);
-    // Only planned sweeps.
+    // Nearly without the information of the flown records, so that only the planned sweeps count.
     let mut information = found.information.unwrap().as_ref().clone();
     information.flown *= 1e-9;
     let planner = FlightPlanner::new(&information, &Sequential).unwrap();
@@ -261,7 +270,7 @@ fn repeats_and_amplitudes_divide_the_variance_of_the_planned_sweeps() {
     let once = both(&sweeps, 1.0);
     let twice = both(&sweeps, 2.0);
     let doubled = both(&larger, 1.0);
-    for (pair, omega) in small_aircraft(0.3).places() {
+    for (pair, omega) in small_aircraft(0.3).comparison_points() {
         let [once, twice, doubled] =
             [&once, &twice, &doubled].map(|after| variance(&planner, after, pair, omega));
         for (found, expected) in [
@@ -270,8 +279,12 @@ fn repeats_and_amplitudes_divide_the_variance_of_the_planned_sweeps() {
             (once.re / doubled.re, 4.0),
             (once.im / doubled.im, 4.0),
         ] {
-            // What is left of the flown records, and rounding errors of the elimination.
-            assert!((found / expected - 1.0).abs() < 1e-4, "{found} {expected}");
+            // The tolerance covers the remaining information of the flown records, and rounding
+            // errors of the elimination.
+            assert!(
+                (found / expected - 1.0).abs() < 1e-4,
+                "variance ratio {found}, expected {expected}"
+            );
         }
     }
 }
@@ -283,7 +296,7 @@ fn no_sweep_widens_an_interval() {
     let planner = FlightPlanner::new(found.information.as_ref().unwrap(), &Sequential).unwrap();
     let mut planned: Vec<SweepInformation> = Vec::new();
     let mut before: Vec<f64> = small_aircraft(0.3)
-        .places()
+        .comparison_points()
         .into_iter()
         .map(|(pair, omega)| planner.interval_now(pair, omega).half_db)
         .collect();
@@ -299,22 +312,28 @@ fn no_sweep_widens_an_interval() {
         planned.push(planner.sweep_information(&sweep).unwrap());
         let all: Vec<Repeated> = planned.iter().map(|sweep| repeated(sweep, 1.0)).collect();
         let after = planner.after(&all).unwrap();
-        for ((pair, omega), before) in small_aircraft(0.3).places().into_iter().zip(&mut before) {
+        for ((pair, omega), before) in small_aircraft(0.3)
+            .comparison_points()
+            .into_iter()
+            .zip(&mut before)
+        {
             let interval = planner.interval(&after, pair, omega).unwrap();
             assert!(
                 interval.half_db <= *before * (1.0 + 1e-9),
-                "{pair:?} {omega}"
+                "{pair:?} at {omega} rad/s: {} dB after {before} dB",
+                interval.half_db
             );
             assert!(
                 interval.half_db >= planner.interval_limit(pair, omega).half_db,
-                "{pair:?} {omega}"
+                "{pair:?} at {omega} rad/s is below the limit: {} dB",
+                interval.half_db
             );
             *before = interval.half_db;
         }
     }
 }
 
-/// Returns the information of a flown record at the model for which flights are planned.
+/// Returns the information of a simulated record at the model for which flights are planned.
 fn information_of(record: &FlightRecord, information: &FlightInformation) -> SweepInformation {
     let prepared = segments_of(record, &small_aircraft(0.3).preparation()).unwrap();
     let segments: Vec<Segment> = prepared
@@ -332,7 +351,7 @@ fn information_of(record: &FlightRecord, information: &FlightInformation) -> Swe
 }
 
 #[test]
-fn the_predicted_variance_is_that_of_the_flight() {
+fn the_predicted_variance_agrees_with_the_information_of_the_flight() {
     let mut random = Generator::new(5);
     let found = first_identification(5);
     let information = found.information.as_ref().unwrap();
@@ -344,41 +363,44 @@ fn the_predicted_variance_is_that_of_the_flight() {
                 ..information.with_length(&sweep_of(input), length_s)
             };
             let planned = planner.sweep_information(&sweep).unwrap();
-            let record = small_aircraft(0.3).flown(&sweep, &mut random);
+            let record = small_aircraft(0.3).fly(&sweep, &mut random);
             let actual = information_of(&record, information);
             let planned = planner.after(&[repeated(&planned, 1.0)]).unwrap();
             let actual = planner.after(&[repeated(&actual, 1.0)]).unwrap();
-            for (pair, omega) in small_aircraft(0.3).places() {
+            for (pair, omega) in small_aircraft(0.3).comparison_points() {
                 let [planned, actual] =
                     [&planned, &actual].map(|after| variance(&planner, after, pair, omega));
                 let ratios = [planned.re / actual.re, planned.im / actual.im];
+                // The record differs from the planned sweep by its remnant and noise.
                 assert!(
                     ratios.iter().all(|ratio| (0.87..1.15).contains(ratio)),
-                    "{pair:?} {omega}: {ratios:?}"
+                    "{pair:?} at {omega} rad/s: predicted over actual variance {ratios:?}"
                 );
             }
         }
     }
 }
 
-/// Half-widths obtained by further sweeps, relative to those predicted.
+/// Half-widths of intervals after further sweeps, over many flights.
 #[derive(Default)]
 struct Comparison {
+    /// Obtained over predicted half-widths.
     ratios: Vec<f64>,
-    /// Half-widths before, relative to those obtained.
+    /// Half-widths before the sweeps over those obtained.
     gains: Vec<f64>,
     /// Flights without a model.
     failures: usize,
 }
 
 impl Comparison {
-    /// Identifies a first flight, flies two further sweeps of each input, and identifies again.
+    /// Identifies a first flight, simulates two further sweeps of each input, and identifies all
+    /// records.
     fn add(&mut self, aircraft: &Aircraft, random: &mut Generator) {
         let options = Options::new(BAND, aircraft.preparation());
-        let mut records = aircraft.first_flight(random);
+        let mut records = aircraft.sweep_each_input(random);
         let first = identify(&records, &options, &Sequential, &Unobserved);
         for _ in 0..2 {
-            records.extend(aircraft.first_flight(random));
+            records.extend(aircraft.sweep_each_input(random));
         }
         let second = identify(&records, &options, &Sequential, &Unobserved);
         let Ok(first) = first else {
@@ -397,7 +419,7 @@ impl Comparison {
         let sweeps: Vec<Repeated> = planned.iter().map(|sweep| repeated(sweep, 2.0)).collect();
         let after = planner.after(&sweeps).unwrap();
         let flown = FlightPlanner::new(second.information.as_ref().unwrap(), &Sequential).unwrap();
-        for (pair, omega) in aircraft.places() {
+        for (pair, omega) in aircraft.comparison_points() {
             let predicted = planner.interval(&after, pair, omega).unwrap().half_db;
             let obtained = flown.interval_now(pair, omega).half_db;
             self.ratios.push(obtained / predicted);
@@ -406,11 +428,13 @@ impl Comparison {
         }
     }
 
-    /// Asserts that the median of obtained over predicted is near 1; prints the quantiles.
+    /// Prints the quantiles, and asserts that the median of obtained over predicted half-widths is
+    /// near 1 (measured: docs/identification.md).
     fn assert_predicts(&self, name: &str) {
         let ratios = quantiles(&self.ratios);
         println!(
-            "{name}: obtained over predicted {ratios:.2?}, before over obtained {:.2?}, failures {}",
+            "{name}: obtained over predicted {ratios:.2?}, before over obtained {:.2?}, \
+             failures {}",
             quantiles(&self.gains),
             self.failures
         );
@@ -427,7 +451,7 @@ fn quantiles(values: &[f64]) -> [f64; 5] {
 
 #[test]
 #[ignore = "identifies eighty flights"]
-fn flights_obtain_what_was_predicted() {
+fn identified_flights_have_the_predicted_intervals() {
     for noise in [0.1, 0.3, 1.0] {
         let mut comparison = Comparison::default();
         for seed in 0..10 {
@@ -435,7 +459,8 @@ fn flights_obtain_what_was_predicted() {
         }
         comparison.assert_predicts(&format!("noise {noise}"));
     }
-    // u = r + K y with a random K, as in the flights against the Cramer-Rao bound.
+    // u = r + K y with a random K, as in `efficiency_tests`. [`Aircraft::feedback`] has the
+    // opposite sign.
     for (feedback, first) in [(0.02, 3000), (0.1, 3020)] {
         let mut comparison = Comparison::default();
         for seed in first..first + 10 {
@@ -456,11 +481,11 @@ fn flights_obtain_what_was_predicted() {
 }
 
 #[test]
-fn an_advice_for_an_input_that_was_not_swept_identifies_it() {
+fn flying_the_advised_sweep_identifies_an_input_that_was_not_swept() {
     let aircraft = small_aircraft(0.3);
     let mut random = Generator::new(6);
     let mut records: Vec<FlightRecord> = (0..2)
-        .map(|_| aircraft.flown(&sweep_of(0), &mut random))
+        .map(|_| aircraft.fly(&sweep_of(0), &mut random))
         .collect();
     let options = Options {
         orders: Some(vec![3]),
@@ -476,12 +501,14 @@ fn an_advice_for_an_input_that_was_not_swept_identifies_it() {
     assert!(advice.sweep.is_assumed);
     assert!((advice.sweep.sweep.amplitude - 1.0).abs() < 0.1);
     assert!((advice.sweep.sweep.length_s - 60.0).abs() < 0.1);
+    // A response is identified if its standard deviation is below 3 dB, that is its 95 % half-width
+    // below 1.96 times 3 dB.
     assert!(
         advice.now.half_db > 5.9 && advice.then.half_db < 5.9,
         "{advice:?}"
     );
     for _ in 0..advice.sweep.sweep.repeats {
-        records.push(aircraft.flown(&advice.sweep.sweep, &mut random));
+        records.push(aircraft.fly(&advice.sweep.sweep, &mut random));
     }
     let again = identify(&records, &options, &Sequential, &Unobserved).unwrap();
     assert_eq!(again.not_identified, []);
@@ -489,7 +516,7 @@ fn an_advice_for_an_input_that_was_not_swept_identifies_it() {
 }
 
 #[test]
-fn each_way_to_a_target_reaches_it_or_says_that_it_does_not() {
+fn each_way_to_a_target_reaches_it_or_reports_that_it_is_out_of_reach() {
     let found = first_identification(7);
     let information = found.information.as_ref().unwrap();
     let planner = FlightPlanner::new(information, &Sequential).unwrap();
@@ -502,7 +529,7 @@ fn each_way_to_a_target_reaches_it_or_says_that_it_does_not() {
         half_db: share * now,
     };
     let plan = planner.target_plan(target(1.1), sweep, 16).unwrap();
-    assert_eq!(plan.ways, None);
+    assert_eq!(plan.ways, None, "the interval is already below the target");
     let ways = planner
         .target_plan(target(0.6), sweep, 16)
         .unwrap()
@@ -511,16 +538,15 @@ fn each_way_to_a_target_reaches_it_or_says_that_it_does_not() {
     let Need::Least { amount, half_db } = ways.repeats else {
         panic!("{ways:?}")
     };
-    let information_of_one = planner.sweep_information(&sweep.sweep).unwrap();
+    let single_sweep = planner.sweep_information(&sweep.sweep).unwrap();
     let half_db_after = |times: f64| {
-        let after = planner
-            .after(&[repeated(&information_of_one, times)])
-            .unwrap();
+        let after = planner.after(&[repeated(&single_sweep, times)]).unwrap();
         planner.interval(&after, pair, 2.0).unwrap().half_db
     };
     assert_eq!(half_db, half_db_after(amount as f64));
     assert!(half_db <= 0.6 * now && half_db_after(amount as f64 - 1.0) > 0.6 * now);
-    // As much information by a longer sweep or by a larger amplitude.
+    // The information grows with the length and with the square of the amplitude: the same target
+    // needs about `amount` times the length, or the root of `amount` times the amplitude.
     let Need::Least {
         amount: length_s, ..
     } = ways.length_s
@@ -538,7 +564,8 @@ fn each_way_to_a_target_reaches_it_or_says_that_it_does_not() {
     let ratio = amplitude / sweep.sweep.amplitude;
     assert!(ratio <= (amount as f64).sqrt() + 0.05 && ratio > (amount as f64 - 1.0).sqrt());
     assert!((ways.narrow_band[0] - 1.0).abs() < 1e-9 && (ways.narrow_band[1] - 4.0).abs() < 1e-9);
-    // All of the power is near the frequency of the target.
+    // A sweep from half to twice the frequency of the target has all of its power near it, and
+    // needs no more repeats.
     assert!(matches!(ways.narrow_repeats, Need::Least { amount: narrow, .. } if narrow <= amount));
     let far = planner.target_plan(target(0.01), sweep, 4).unwrap();
     let repeats = far.ways.unwrap().repeats;

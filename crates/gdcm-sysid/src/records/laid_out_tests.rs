@@ -1,4 +1,5 @@
-//! A layout's flight record: cautions, remedies, copies, and transfer to other records.
+//! Flight records read with a layout: cautions, remedies (delay and factor of a channel), copies,
+//! and transfer of a layout to other records.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +14,7 @@ use super::record_guess::RecordGuess;
 use super::record_table::RecordColumn;
 
 #[test]
-fn missing_samples_stay_missing_and_infinite_ones_become_so() {
+fn missing_samples_stay_missing_and_infinite_samples_count_as_missing() {
     let mut table = record();
     table.columns[3].values[7] = f64::INFINITY;
     table.columns[3].values[8] = f64::NAN;
@@ -36,7 +37,7 @@ fn missing_samples_stay_missing_and_infinite_ones_become_so() {
 }
 
 #[test]
-fn a_layout_goes_over_to_a_record_with_the_same_columns_in_another_order() {
+fn a_layout_applies_to_a_record_with_the_same_columns_in_another_order() {
     let first = record();
     let mut second = record();
     second.columns.rotate_left(2);
@@ -45,11 +46,15 @@ fn a_layout_goes_over_to_a_record_with_the_same_columns_in_another_order() {
     let flight = carried.flight_record(&second, &channels()).unwrap();
     assert_eq!(flight, layout.flight_record(&first, &channels()).unwrap());
     second.columns.retain(|column| column.name != "nz");
-    assert_eq!(layout.carried_to(&second, &first), None);
+    assert_eq!(
+        layout.carried_to(&second, &first),
+        None,
+        "a column is missing"
+    );
 }
 
 #[test]
-fn constant_and_equal_channels_are_cautions() {
+fn constant_and_equal_channels_raise_cautions() {
     let mut table = record();
     table.columns[4] = column("LON", "%", |_| 50.0);
     assert_eq!(
@@ -81,12 +86,13 @@ fn named_record(name: &str, first: f64) -> LaidOutRecord {
 }
 
 #[test]
-fn the_same_record_under_two_names_counts_once() {
+fn only_the_first_of_two_equal_records_is_used() {
     let mut records = [
         named_record("a", 55.0),
         named_record("b", 55.0),
         named_record("c", 54.0),
     ];
+    // A second call changes nothing.
     leave_out_copies(&mut records);
     leave_out_copies(&mut records);
     assert_eq!(
@@ -100,7 +106,7 @@ fn the_same_record_under_two_names_counts_once() {
 }
 
 #[test]
-fn remedies_apply_to_one_record_only() {
+fn remedies_apply_to_their_record_only_and_add_up() {
     let table = record();
     let channels = channels();
     let as_logged = proposed(&table).layout;
@@ -140,12 +146,12 @@ fn remedies_apply_to_one_record_only() {
     // columns change.
     let entry = layout.condition_record(&table, &RecordGuess::default(), &channels);
     assert_eq!(entry.remedies, remedies);
-    let other = as_logged
+    let carried = as_logged
         .carried_to(&table, &table)
         .unwrap()
         .with_remedies_of(&layout);
-    assert_eq!(other, layout);
-    // A second application of the remedies adds to the first.
+    assert_eq!(carried, layout);
+    // Applied twice, the delays add to 60 ms, and the two changes of sign cancel.
     layout.add_remedies(&remedies, &channels);
     let twice = layout.flight_record(&table, &channels).unwrap();
     assert!((twice.inputs[(10, 0)] - 53.0).abs() < 1e-12 && twice.outputs == before.outputs);
@@ -160,8 +166,9 @@ fn delay_of_lon(delay_s: f64) -> BTreeMap<String, ChannelRemedy> {
 }
 
 #[test]
-fn gaps_are_not_interpolated_and_long_delays_are_refused() {
+fn a_delay_does_not_interpolate_across_a_gap_and_a_too_long_delay_is_refused() {
     let mut table = record();
+    // The time jumps by 1 s between samples 29 and 30.
     for sample in 30..60 {
         table.columns[1].values[sample] += 1.0;
     }

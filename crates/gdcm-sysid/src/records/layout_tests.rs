@@ -22,6 +22,7 @@ fn rule(name: &str, unit: &str) -> ChannelRule {
     }
 }
 
+/// The channels of the dataset: two inputs and two outputs.
 pub(super) fn channels() -> RecordChannels {
     RecordChannels {
         inputs: vec![rule("LON", "%"), rule("LAT", "%")],
@@ -30,6 +31,7 @@ pub(super) fn channels() -> RecordChannels {
     }
 }
 
+/// A column of 60 samples; `values` has the number of the sample as its argument.
 pub(super) fn column(name: &str, unit: &str, values: impl Fn(f64) -> f64) -> RecordColumn {
     let values = (0..60).map(|sample| values(f64::from(sample))).collect();
     RecordColumn {
@@ -49,7 +51,7 @@ fn table(columns: Vec<RecordColumn>) -> RecordTable {
     }
 }
 
-/// A record with column names and an order from another program.
+/// A record at 50 Hz whose column names and order are those of another program.
 pub(super) fn record() -> RecordTable {
     table(vec![
         column("nz", "g", |k| 0.1 * (0.3 * k).sin()),
@@ -72,6 +74,22 @@ fn accepted(table: &RecordTable, channels: &RecordChannels) -> RecordLayout {
     proposal.layout
 }
 
+fn column_note(channel: &str, column: &str, conversion: ColumnConversion) -> LayoutNote {
+    LayoutNote::Column {
+        channel: channel.to_owned(),
+        column: format!("\"{column}\""),
+        conversion,
+    }
+}
+
+fn converted(from: &str, to: &str, factor: f64) -> ColumnConversion {
+    ColumnConversion::Converted {
+        from: from.to_owned(),
+        to: to.to_owned(),
+        factor,
+    }
+}
+
 #[test]
 fn channels_are_found_by_synonyms_and_converted_with_notes() {
     let table = record();
@@ -82,16 +100,6 @@ fn channels_are_found_by_synonyms_and_converted_with_notes() {
         (0, 0),
         "{proposal:?}"
     );
-    let note = |channel: &str, column: &str, conversion| LayoutNote::Column {
-        channel: channel.to_owned(),
-        column: format!("\"{column}\""),
-        conversion,
-    };
-    let converted = |from: &str, to: &str, factor| ColumnConversion::Converted {
-        from: from.to_owned(),
-        to: to.to_owned(),
-        factor,
-    };
     let percent = "%".to_owned();
     assert_eq!(
         proposal.notes,
@@ -101,7 +109,7 @@ fn channels_are_found_by_synonyms_and_converted_with_notes() {
                 unit: "s",
                 reason: TimeUnitReason::Given,
             },
-            note(
+            column_note(
                 "LON",
                 "delta_b",
                 ColumnConversion::OnlyPlausibleUnit {
@@ -109,13 +117,13 @@ fn channels_are_found_by_synonyms_and_converted_with_notes() {
                     factor: 1.0
                 }
             ),
-            note("LAT", "lateral", ColumnConversion::SameUnit(percent)),
-            note(
+            column_note("LAT", "lateral", ColumnConversion::SameUnit(percent)),
+            column_note(
                 "P",
                 "roll rate",
                 converted("rad/s", "deg/s", 57.29577951308232)
             ),
-            note("NZ", "nz", converted("g", "m/s²", 9.80665)),
+            column_note("NZ", "nz", converted("g", "m/s²", 9.80665)),
         ]
     );
     let flight = proposal.layout.flight_record(&table, &channels).unwrap();
@@ -140,12 +148,13 @@ fn channels_are_found_by_synonyms_and_converted_with_notes() {
     );
     assert!(
         (entry.sample_time_s.unwrap() - 0.02).abs() < 1e-14,
-        "a difference of two stamps"
+        "the sample time is a difference of two time stamps"
     );
 }
 
 #[test]
-fn a_rate_of_thousands_of_degrees_is_refused_with_a_guess_at_the_unit() {
+fn an_implausible_rate_is_refused_with_the_likely_unit() {
+    // 20 rad/s are 1146 deg/s; at most 400 deg/s are plausible.
     let mut table = record();
     table.columns[3] = column("roll rate", "rad/s", |k| 20.0 * (0.2 * k).sin());
     let problems = proposed(&table).problems;
@@ -181,6 +190,11 @@ fn with_roll_rate(unit_in_file: &str, peak: f64, unit: &str) -> LayoutProposal {
     proposal
 }
 
+fn caution_codes(layout: &RecordLayout, table: &RecordTable) -> Vec<&'static str> {
+    let cautions = layout.cautions(table, &channels());
+    cautions.iter().map(LayoutCaution::code).collect()
+}
+
 #[test]
 fn an_assumed_unit_is_a_caution_until_it_is_confirmed_or_chosen() {
     let channels = channels();
@@ -190,26 +204,25 @@ fn an_assumed_unit_is_a_caution_until_it_is_confirmed_or_chosen() {
     assert_eq!(open.problems(&table, &channels).len(), 1);
     let assumed = open.assuming_units_of_channels();
     assert_eq!(assumed.problems(&table, &channels), []);
-    let codes = |layout: &RecordLayout| -> Vec<&str> {
-        let cautions = layout.cautions(&table, &channels);
-        cautions.iter().map(LayoutCaution::code).collect()
-    };
-    assert_eq!(codes(&assumed), ["unit-assumed"]);
-    assert_eq!(codes(&assumed.in_units_of_channels()), [""; 0]);
+    assert_eq!(caution_codes(&assumed, &table), ["unit-assumed"]);
+    assert_eq!(
+        caution_codes(&assumed.in_units_of_channels(), &table),
+        [""; 0]
+    );
     let mut chosen = assumed.clone();
     chosen.outputs[0] = chosen.outputs[0].map(|used| used.in_unit("rad/s", "deg/s"));
-    assert_eq!(codes(&chosen), [""; 0]);
+    assert_eq!(caution_codes(&chosen, &table), [""; 0]);
     assert_eq!(
         assumed.assuming_units_of_channels(),
         assumed,
-        "an assumption stays one"
+        "a second assumption changes nothing"
     );
 }
 
 #[test]
-fn a_unit_that_fits_only_one_way_is_taken_and_an_ambiguous_unit_is_a_problem() {
-    // 6.9 rad/s are 395 deg/s, which is plausible for a helicopter; 7.1 rad/s are 407 deg/s, which
-    // is not.
+fn the_only_plausible_unit_is_used_and_an_ambiguous_unit_is_a_problem() {
+    // 6.9 may be deg/s or rad/s: 6.9 rad/s are 395 deg/s, which is plausible for a helicopter.
+    // 7.1 rad/s are 407 deg/s, which is not: 7.1 must be deg/s.
     assert_eq!(
         with_roll_rate("", 6.9, "deg/s").problems,
         [LayoutProblem::UnitNotGiven {
@@ -219,17 +232,17 @@ fn a_unit_that_fits_only_one_way_is_taken_and_an_ambiguous_unit_is_a_problem() {
             units: vec!["deg/s".to_owned(), "rad/s".to_owned()],
         }]
     );
-    let taken = with_roll_rate("", 7.1, "deg/s");
+    let unambiguous = with_roll_rate("", 7.1, "deg/s");
     assert!(
         matches!(
-            &taken.notes[3],
+            &unambiguous.notes[3],
             LayoutNote::Column {
                 conversion: ColumnConversion::OnlyPlausibleUnit { unit, factor: 1.0 },
                 ..
             } if unit == "deg/s"
         ),
         "{:?}",
-        taken.notes
+        unambiguous.notes
     );
     let degree = std::f64::consts::PI / 180.0;
     for (unit_in_file, peak, unit, factor) in [
@@ -249,33 +262,37 @@ fn a_unit_that_fits_only_one_way_is_taken_and_an_ambiguous_unit_is_a_problem() {
 }
 
 #[test]
-fn the_user_s_unit_of_a_channel_applies_to_files_without_units() {
+fn a_unit_declared_by_the_user_applies_to_files_without_units() {
     let mut table = record();
     table.columns[3].unit = None;
     let mut channels = channels();
     channels
         .declared
         .insert("P".to_owned(), DeclaredConversion::Unit("rad/s".to_owned()));
-    let said = RecordLayout::proposed(&table, &channels, &TimeSettings::default());
+    let declared = RecordLayout::proposed(&table, &channels, &TimeSettings::default());
     assert_eq!(
-        (said.problems.len(), said.layout.outputs[0].unwrap().factor),
+        (
+            declared.problems.len(),
+            declared.layout.outputs[0].unwrap().factor
+        ),
         (0, 180.0 / std::f64::consts::PI)
     );
     // Reading the record again with the dataset, in deg/s, gives the same samples.
-    let entry = said
+    let entry = declared
         .layout
         .condition_record(&table, &RecordGuess::default(), &channels);
-    let again = RecordChannels {
+    let dataset_channels = RecordChannels {
         declared: BTreeMap::new(),
         ..channels.clone()
     }
     .of_named_records();
-    let again = LaidOutRecord::proposed(table.clone(), &again, &TimeSettings::default())
-        .0
-        .with_entry(&entry, &again);
+    let reread =
+        LaidOutRecord::proposed(table.clone(), &dataset_channels, &TimeSettings::default())
+            .0
+            .with_entry(&entry, &dataset_channels);
     assert_eq!(
-        again.flight.as_deref(),
-        Some(&said.layout.flight_record(&table, &channels).unwrap())
+        reread.flight.as_deref(),
+        Some(&declared.layout.flight_record(&table, &channels).unwrap())
     );
 }
 
@@ -287,7 +304,7 @@ fn problems_with_time(time: RecordColumn) -> Vec<LayoutProblem> {
 }
 
 #[test]
-fn a_time_that_falls_is_refused() {
+fn a_time_that_decreases_is_refused() {
     let slip = column("t", "s", |k| if k == 30.0 { 0.1 } else { 0.02 * k });
     assert_eq!(
         problems_with_time(slip),
@@ -303,7 +320,7 @@ fn a_time_that_falls_is_refused() {
 }
 
 #[test]
-fn a_time_in_minutes_is_refused() {
+fn a_time_with_steps_of_six_seconds_is_refused() {
     let problems = problems_with_time(column("t", "min", |k| 0.1 * k));
     let [LayoutProblem::TimeStep { column, step_s }] = problems.as_slice() else {
         panic!("{problems:?}");
@@ -318,7 +335,7 @@ fn a_time_without_a_unit_in_steps_of_twenty_is_in_milliseconds() {
 }
 
 #[test]
-fn a_record_without_a_time_takes_the_sample_time_of_the_user() {
+fn a_record_without_time_uses_the_sample_time_given_by_the_user() {
     let without_time = problems_with_time(column("count", "", |k| k));
     let [LayoutProblem::NoTime(columns)] = without_time.as_slice() else {
         panic!("{without_time:?}");
@@ -326,17 +343,17 @@ fn a_record_without_a_time_takes_the_sample_time_of_the_user() {
     assert_eq!(columns[..2], ["nz", "count"]);
     let mut table = record();
     table.columns.remove(1);
-    let rate = TimeSettings {
+    let given_sample_time = TimeSettings {
         sample_time_s: Some(0.02),
         column: None,
     };
-    let proposal = RecordLayout::proposed(&table, &channels(), &rate);
+    let proposal = RecordLayout::proposed(&table, &channels(), &given_sample_time);
     assert_eq!(proposal.problems, []);
-    let missing = TimeSettings {
+    let missing_column = TimeSettings {
         sample_time_s: None,
         column: Some("clock".into()),
     };
-    let proposal = RecordLayout::proposed(&table, &channels(), &missing);
+    let proposal = RecordLayout::proposed(&table, &channels(), &missing_column);
     let Some(LayoutProblem::NoSuchColumn { name, found }) = proposal.problems.first() else {
         panic!("{:?}", proposal.problems);
     };
@@ -370,6 +387,7 @@ fn missing_ambiguous_and_inconvertible_channels_are_problems() {
         },
     ];
     assert_eq!(problems, expected);
+    // The user chooses columns and factors.
     let mut layout = proposed(&table).layout;
     layout.outputs = vec![
         Some(ColumnUse::as_it_is(6)),
@@ -408,7 +426,7 @@ fn numbered_rule(name: &str, unit: &str, number: &str) -> ChannelRule {
 }
 
 #[test]
-fn columns_without_names_need_their_numbers() {
+fn columns_without_names_are_not_guessed_but_found_by_their_numbers() {
     let mut table = table(
         (0..5)
             .map(|index| column("", "", move |k| 0.02 * k * f64::from(index + 1)))
@@ -482,7 +500,7 @@ fn with_acceleration(name: &str, alias: Option<&str>) -> LayoutProposal {
 }
 
 #[test]
-fn the_sign_is_the_mark_in_the_column_name_or_a_decision_of_the_user() {
+fn the_sign_comes_from_the_column_name_or_from_the_user() {
     for (name, alias, factor) in [
         ("NZ", None, 1.0),
         ("-nz", None, -1.0),
@@ -540,8 +558,8 @@ fn inputs_with_slope(slope: f64) -> usize {
 }
 
 #[test]
-fn coordinates_are_not_sticks_even_under_their_names() {
-    assert_eq!(inputs_with_slope(1e-5), 0, "a track");
+fn slow_geographic_coordinates_are_not_taken_for_sticks() {
+    assert_eq!(inputs_with_slope(1e-5), 0, "a latitude and a longitude");
     assert_eq!(inputs_with_slope(0.1), 2, "sticks");
 }
 
@@ -553,7 +571,7 @@ fn marked_column(name: &str, side: ChannelSide, scale: f64) -> RecordColumn {
 }
 
 #[test]
-fn inputs_and_outputs_marked_in_the_file_are_taken_in_order() {
+fn inputs_and_outputs_marked_in_the_file_are_used_in_their_order() {
     let mut table = table(vec![
         column("t", "", |k| 0.01 * k),
         marked_column("inr_1", ChannelSide::Input, 10.0),
@@ -571,7 +589,7 @@ fn inputs_and_outputs_marked_in_the_file_are_taken_in_order() {
 }
 
 #[test]
-fn channels_without_a_unit_take_the_first_file_s_and_later_files_are_converted() {
+fn channels_without_a_unit_adopt_that_of_the_first_file_and_later_files_are_converted() {
     let mut channels = RecordChannels {
         outputs: vec![ChannelRule::named("P")],
         ..RecordChannels::default()
@@ -601,7 +619,11 @@ fn an_alias_finds_its_column_in_any_spelling() {
         ..RecordChannels::default()
     };
     let yoke = [Some(ColumnUse::as_it_is(1))];
-    assert_eq!(accepted(&table, &channels).inputs, yoke, "no longitude");
+    assert_eq!(
+        accepted(&table, &channels).inputs,
+        yoke,
+        "LON must not be the longitude"
+    );
     channels.inputs[0].aliases = vec!["elev_yoke1".to_owned()];
     assert_eq!(accepted(&table, &channels).inputs, yoke);
 }
@@ -618,7 +640,7 @@ fn with_position(lat: RecordColumn, lon: RecordColumn) -> LayoutProposal {
 }
 
 #[test]
-fn a_latitude_and_a_longitude_are_no_sticks() {
+fn columns_named_lat_and_lon_are_sticks_only_if_they_move_like_sticks() {
     for unit in ["", "deg"] {
         let found = with_position(
             column("lat", unit, |k| 47.6 + 1e-5 * k),
@@ -663,7 +685,7 @@ fn with_numbers(last: &str) -> LayoutProposal {
 }
 
 #[test]
-fn columns_without_names_are_found_by_their_numbers() {
+fn time_and_channels_without_names_are_found_by_their_numbers() {
     let found = with_numbers("#1");
     assert_eq!(found.problems, [], "{found:?}");
     assert_eq!(found.layout.inputs, [Some(ColumnUse::as_it_is(4))]);
@@ -680,7 +702,7 @@ fn columns_without_names_are_found_by_their_numbers() {
 }
 
 #[test]
-fn the_user_s_unit_or_factor_overrides_the_file() {
+fn a_unit_or_factor_declared_by_the_user_overrides_the_file() {
     let mut channels = channels();
     channels
         .declared
@@ -706,10 +728,10 @@ fn the_user_s_unit_or_factor_overrides_the_file() {
     assert!(found.notes.contains(&note), "{:?}", found.notes);
 }
 
-/// A factor includes the sign: the mark in a column's name is not applied too, even if the user
-/// selects the column by that name. A minus that the user adds to the name is.
+/// A factor includes the sign: a mark in the column's name does not reverse it again, even if the
+/// user selects the column by that name. A minus that the user adds to the name does.
 #[test]
-fn a_user_s_factor_includes_the_sign_of_the_column() {
+fn a_factor_declared_by_the_user_includes_the_sign_of_the_column() {
     for (name, alias, factor) in [
         ("az (down)", None, -9.81),
         ("az (down)", Some("az (down)"), -9.81),
@@ -731,7 +753,7 @@ fn a_user_s_factor_includes_the_sign_of_the_column() {
 }
 
 #[test]
-fn a_mark_before_an_alias_reverses_the_sign() {
+fn a_minus_before_an_alias_reverses_the_sign() {
     let mut channels = channels();
     channels.outputs[1].aliases = vec!["-nz".to_owned()];
     let found = RecordLayout::proposed(&record(), &channels, &TimeSettings::default());

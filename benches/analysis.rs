@@ -57,20 +57,24 @@ fn stages(criterion: &mut Criterion) {
     let condition = &dataset.conditions()[9];
     let grid = FrequencyGrid::logarithmic(dataset.band(), 200);
     let measuring = dataset.measuring_pairs();
-    let alone = Execution::sequential();
-    let responses = ConditionResponses::compute(condition, (dataset.band(), 200), &alone)
+    let sequential = Execution::sequential();
+    let responses = ConditionResponses::compute(condition, (dataset.band(), 200), &sequential)
         .expect("nobody stops it");
     let comparison_grid = ComparisonGrid {
         grid: &grid,
         coherence: None,
     };
-    let figures =
-        BundleMetrics::compute(condition, &responses, &measuring, comparison_grid, &alone)
-            .expect("nobody stops it");
-    let polar = PolarResponse::new;
+    let metrics = BundleMetrics::compute(
+        condition,
+        &responses,
+        &measuring,
+        comparison_grid,
+        &sequential,
+    )
+    .expect("nobody stops it");
     let mismatch = mismatch_table(
-        &polar(&responses.physics[10]),
-        &polar(&responses.identified[2]),
+        &PolarResponse::new(&responses.physics[10]),
+        &PolarResponse::new(&responses.identified[2]),
         None,
     );
     let models = condition.bundle(BundleKind::Physics);
@@ -83,15 +87,21 @@ fn stages(criterion: &mut Criterion) {
         .collect();
     let mut group = criterion.benchmark_group("one condition");
     group.bench_function("responses of models not prepared", |bencher| {
-        bencher.iter(|| ConditionResponses::compute(condition, (dataset.band(), 200), &alone));
+        bencher.iter(|| ConditionResponses::compute(condition, (dataset.band(), 200), &sequential));
     });
     group.bench_function("distances and ratios", |bencher| {
         bencher.iter(|| {
-            BundleMetrics::compute(condition, &responses, &measuring, comparison_grid, &alone)
+            BundleMetrics::compute(
+                condition,
+                &responses,
+                &measuring,
+                comparison_grid,
+                &sequential,
+            )
         });
     });
-    group.bench_function("ratios", |bencher| {
-        bencher.iter(|| Discontinuity::fit(&figures.physics, &perturbed, &|| false))
+    group.bench_function("discontinuity ratios", |bencher| {
+        bencher.iter(|| Discontinuity::fit(&metrics.physics, &perturbed, &|| false))
     });
     group.bench_function("G and D", |bencher| {
         bencher.iter(|| Delta::new(&mismatch, grid.omega()))
@@ -119,14 +129,14 @@ fn live_loop(criterion: &mut Criterion) {
 fn all_conditions(criterion: &mut Criterion, name: &str, engine: impl Fn() -> Engine) {
     let mut group = criterion.benchmark_group(name);
     group.sample_size(20);
-    group.bench_function("everything anew", |bencher| {
+    group.bench_function("nothing cached", |bencher| {
         let study = Study::new(example());
         bencher.iter(|| engine().analyze(black_box(&study), &Unobserved));
     });
-    let mut turn = 0.0;
-    let mut drag = |name: &str, change: &dyn Fn(&mut Study, f64)| {
+    for (name, change) in CHANGES {
         let mut engine = engine();
         let mut study = Study::new(example());
+        let mut turn = 0.0;
         group.bench_function(name, |bencher| {
             bencher.iter(|| {
                 turn += 1.0;
@@ -134,52 +144,65 @@ fn all_conditions(criterion: &mut Criterion, name: &str, engine: impl Fn() -> En
                 engine.analyze(&study, &Unobserved)
             });
         });
-    };
-    let set = |study: &mut Study, edit: Edit| study.apply(&edit).expect("within its range");
-    drag("alpha dragged", &|study, turn| {
-        set(study, setting_table::ALPHA_GAIN.to(1.0 + 1e-6 * turn))
-    });
-    let under_lead = |study: &mut Study, edit: Edit| {
-        set(study, setting_table::PHASE.to(PhaseCorrection::Lead));
-        set(study, edit);
-    };
-    drag("alpha dragged under lead", &|study, turn| {
-        under_lead(study, setting_table::ALPHA_GAIN.to(1.0 + 1e-6 * turn))
-    });
-    drag("alpha of the delays dragged under lead", &|study, turn| {
-        under_lead(study, setting_table::ALPHA_DELAY.to(1.0 + 1e-6 * turn));
-    });
-    drag("n dragged under lead", &|study, turn| {
-        under_lead(study, setting_table::LEAD_POLE.to(3.0 + 1e-6 * turn))
-    });
-    drag("R_max dragged under lead", &|study, turn| {
-        under_lead(study, setting_table::LEAD_LIMIT.to(10.0 + 1e-6 * turn))
-    });
-    drag("band edge dragged", &|study, turn| {
-        let band = Band::new(0.5, 12.0 + 1e-6 * turn).expect("rising");
-        set(study, setting_table::BAND.to(band));
-    });
-    drag("model rejected", &|study, turn| {
-        let id = ModelId::new(ConditionId(10), BundleKind::Physics, "nominal");
-        let edit = if turn % 2.0 == 0.0 {
-            Edit::Reject(id)
-        } else {
-            Edit::Restore(id)
-        };
-        study.apply(&edit).expect("others are kept");
-    });
+    }
     group.finish();
 }
 
-/// Prints the speed-up of each stage over a plain method, measured in the same run: minimum time of
-/// a few repetitions each.
+/// Changes of a study, by name. Every turn sets another value or toggles a decision, so that no
+/// result that depends on it is cached.
+const CHANGES: [(&str, fn(&mut Study, f64)); 7] = [
+    ("alpha dragged", |study, turn| {
+        apply(study, setting_table::ALPHA_GAIN.to(1.0 + 1e-6 * turn));
+    }),
+    ("alpha dragged under lead", |study, turn| {
+        apply_under_lead(study, setting_table::ALPHA_GAIN.to(1.0 + 1e-6 * turn));
+    }),
+    ("alpha of the delays dragged under lead", |study, turn| {
+        apply_under_lead(study, setting_table::ALPHA_DELAY.to(1.0 + 1e-6 * turn));
+    }),
+    ("n dragged under lead", |study, turn| {
+        apply_under_lead(study, setting_table::LEAD_POLE.to(3.0 + 1e-6 * turn));
+    }),
+    ("R_max dragged under lead", |study, turn| {
+        apply_under_lead(study, setting_table::LEAD_LIMIT.to(10.0 + 1e-6 * turn));
+    }),
+    ("band edge dragged", |study, turn| {
+        let band = Band::new(0.5, 12.0 + 1e-6 * turn).expect("rising");
+        apply(study, setting_table::BAND.to(band));
+    }),
+    ("model rejected", |study, turn| {
+        apply(study, nominal_rejected(turn % 2.0 == 0.0));
+    }),
+];
+
+fn apply(study: &mut Study, edit: Edit) {
+    study.apply(&edit).expect("an edit within its range");
+}
+
+fn apply_under_lead(study: &mut Study, edit: Edit) {
+    apply(study, setting_table::PHASE.to(PhaseCorrection::Lead));
+    apply(study, edit);
+}
+
+/// Returns the edit that rejects the nominal model of condition 10, or restores it.
+fn nominal_rejected(rejected: bool) -> Edit {
+    let id = ModelId::new(ConditionId(10), BundleKind::Physics, "nominal");
+    if rejected {
+        Edit::Reject(id)
+    } else {
+        Edit::Restore(id)
+    }
+}
+
+/// Prints the speed-up over plain methods that are measured in the same run, each by the minimum
+/// time of a few repetitions.
 fn ratios(_: &mut Criterion) {
     let dataset = example();
     let condition = &dataset.conditions()[9];
     let grid = FrequencyGrid::logarithmic(dataset.band(), 200);
-    let alone = Execution::sequential();
-    let ours = shortest(20, || {
-        ConditionResponses::compute(condition, (dataset.band(), 200), &alone)
+    let sequential = Execution::sequential();
+    let fast = shortest(20, || {
+        ConditionResponses::compute(condition, (dataset.band(), 200), &sequential)
     });
     let models = [BundleKind::Physics, BundleKind::Identified]
         .map(|kind| condition.bundle(kind))
@@ -193,16 +216,16 @@ fn ratios(_: &mut Criterion) {
     });
     println!(
         "responses of one condition: a dense LU at each frequency takes {:.0} times as long",
-        plain.div_duration_f64(ours)
+        plain.div_duration_f64(fast)
     );
     let study = Study::new(Arc::clone(&dataset));
-    let anew = shortest(5, || Engine::default().analyze(&study, &Unobserved));
-    let together = shortest(5, || {
+    let uncached = shortest(5, || Engine::default().analyze(&study, &Unobserved));
+    let on_all_cores = shortest(5, || {
         Engine::with_executor(Box::new(Pool)).analyze(&study, &Unobserved)
     });
     println!(
         "without cached results: one core takes {:.2} times as long as all cores",
-        anew.div_duration_f64(together)
+        uncached.div_duration_f64(on_all_cores)
     );
     let mut engine = Engine::default();
     let mut dragged = study.clone();
@@ -216,47 +239,53 @@ fn ratios(_: &mut Criterion) {
     });
     println!(
         "alpha dragged: without cached results the analysis would take {:.0} times as long",
-        anew.div_duration_f64(drag)
+        uncached.div_duration_f64(drag)
     );
+}
+
+/// Number of physics models in the study of [`large_study`].
+const MODELS: usize = 200;
+
+/// Returns a study of the first condition of `example` with [`MODELS`] physics models: the nominal
+/// model with its input matrix scaled, which for model 7 is by `scale`.
+fn large_study(example: &Dataset, scale: f64) -> Study {
+    let first = &example.conditions()[0];
+    let base = first.bundle(BundleKind::Physics)[0]
+        .state_space()
+        .expect("the physics models of the example have matrices");
+    let mut physics = Vec::new();
+    for index in 0..MODELS {
+        let factor = if index == 7 {
+            scale
+        } else {
+            1.0 + 1e-4 * index as f64
+        };
+        let a = base.a().clone();
+        let b = factor * base.b();
+        let c = base.c().clone();
+        let d = base.d().clone();
+        let dynamics = Dynamics::StateSpace(StateSpace::new(a, b, c, d).expect("the shapes agree"));
+        let perturbation = None;
+        let origin = if index == 0 {
+            Origin::Nominal { perturbation }
+        } else {
+            Origin::Perturbed { perturbation }
+        };
+        physics.push(Model::new(format!("model {index}"), origin, dynamics));
+    }
+    let identified = first.bundle(BundleKind::Identified).to_vec();
+    let condition = Condition::new(first.flight_state().clone(), physics, identified);
+    let dataset = Dataset::new(example.header(), vec![condition.expect("names differ")]);
+    Study::new(Arc::new(dataset.expect("the shapes agree")))
 }
 
 /// Measures the analysis after one of two hundred models is replaced by another model of the same
 /// name: only its response, and what depends on it, is computed again.
 fn replaced_model(_: &mut Criterion) {
-    const MODELS: usize = 200;
     let example = example();
     let first = &example.conditions()[0];
-    let Dynamics::StateSpace(base) = &first.bundle(BundleKind::Physics)[0].dynamics else {
-        return;
-    };
-    let study = |scale: f64| {
-        let physics = (0..MODELS).map(|index| {
-            let factor = if index == 7 {
-                scale
-            } else {
-                1.0 + 1e-4 * index as f64
-            };
-            let a = base.a().clone();
-            let b = factor * base.b();
-            let c = base.c().clone();
-            let d = base.d().clone();
-            let dynamics =
-                Dynamics::StateSpace(StateSpace::new(a, b, c, d).expect("the shapes agree"));
-            let perturbation = None;
-            let origin = if index == 0 {
-                Origin::Nominal { perturbation }
-            } else {
-                Origin::Perturbed { perturbation }
-            };
-            Model::new(format!("model {index}"), origin, dynamics)
-        });
-        let identified = first.bundle(BundleKind::Identified).to_vec();
-        let condition = Condition::new(first.flight_state().clone(), physics.collect(), identified);
-        let dataset = Dataset::new(example.header(), vec![condition.expect("names differ")]);
-        Study::new(Arc::new(dataset.expect("the shapes agree")))
-    };
-    let before = study(1.0);
-    let anew = shortest(5, || Engine::default().analyze(&before, &Unobserved));
+    let before = large_study(&example, 1.0);
+    let uncached = shortest(5, || Engine::default().analyze(&before, &Unobserved));
     let mut engine = Engine::default();
     let curves = |engine: &mut Engine, study: &Study| {
         engine.curves(
@@ -266,25 +295,25 @@ fn replaced_model(_: &mut Criterion) {
             &Unobserved,
         )
     };
-    let drawn_anew = shortest(5, || curves(&mut Engine::default(), &before));
-    let _ = (
-        engine.analyze(&before, &Unobserved),
-        curves(&mut engine, &before),
-    );
+    let drawn_uncached = shortest(5, || curves(&mut Engine::default(), &before));
+    // Fill the caches of the engine.
+    let _ = engine.analyze(&before, &Unobserved);
+    let _ = curves(&mut engine, &before);
     let mut scale = 1.0;
     let mut replaced = Duration::MAX;
     let mut drawn = Duration::MAX;
     for _ in 0..20 {
         scale += 1e-6;
-        let after = study(scale);
+        let after = large_study(&example, scale);
         drawn = drawn.min(shortest(1, || curves(&mut engine, &after)));
         replaced = replaced.min(shortest(1, || engine.analyze(&after, &Unobserved)));
     }
     println!(
-        "one of {MODELS} models replaced, one core: analysis {replaced:.2?} (without cached results {:.1} times as \
-         long); curves for drawing, with the hashes of all models, {drawn:.2?} (without cached results {:.1} times as long)",
-        anew.div_duration_f64(replaced),
-        drawn_anew.div_duration_f64(drawn)
+        "one of {MODELS} models replaced, one core: analysis {replaced:.2?} (without cached results \
+         {:.1} times as long); curves for drawing, with the hashes of all models, {drawn:.2?} \
+         (without cached results {:.1} times as long)",
+        uncached.div_duration_f64(replaced),
+        drawn_uncached.div_duration_f64(drawn)
     );
 }
 
@@ -292,30 +321,27 @@ fn replaced_model(_: &mut Criterion) {
 /// Target: 150 ms on two cores after a rejection, with 20 substitutions per condition; the embedded
 /// example needs about 29, because its identified bundles have 11 or 12 models.
 fn bars(criterion: &mut Criterion) {
-    bars_of(criterion, "error bars of all conditions", example());
+    measure_bars(criterion, "error bars of all conditions", example());
     let embedded = embedded_example()
         .expect("the embedded example is a dataset")
         .dataset;
-    bars_of(criterion, "error bars of the embedded example", embedded);
+    measure_bars(criterion, "error bars of the embedded example", embedded);
 }
 
-fn bars_of(criterion: &mut Criterion, name: &str, dataset: Arc<Dataset>) {
+fn measure_bars(criterion: &mut Criterion, name: &str, dataset: Arc<Dataset>) {
     let mut group = criterion.benchmark_group(name);
     group.sample_size(10);
     let mut study = Study::new(dataset);
     let mut engine = Engine::with_executor(Box::new(Pool));
-    let reps = |study: &Study, engine: &mut Engine| {
-        engine.analyze(study, &Unobserved).expect("nobody stops it")
-    };
-    group.bench_function("all swaps anew, responses kept", |bencher| {
+    group.bench_function("all substitutions, responses cached", |bencher| {
         let mut turn = 0.0;
         bencher.iter(|| {
             turn += 1.0;
             // All substitutions depend on alpha, but no response does.
-            study
-                .apply(&setting_table::ALPHA_GAIN.to(1.0 + 1e-6 * turn))
-                .expect("within its range");
-            let analysis = reps(&study, &mut engine);
+            apply(&mut study, setting_table::ALPHA_GAIN.to(1.0 + 1e-6 * turn));
+            let analysis = engine
+                .analyze(&study, &Unobserved)
+                .expect("nobody stops it");
             engine.uncertainty(&analysis, &Unobserved)
         });
     });
@@ -323,15 +349,10 @@ fn bars_of(criterion: &mut Criterion, name: &str, dataset: Arc<Dataset>) {
         let mut turn = 0;
         bencher.iter(|| {
             turn += 1;
-            let id = ModelId::new(ConditionId(10), BundleKind::Physics, "nominal");
-            study
-                .apply(&if turn % 2 == 0 {
-                    Edit::Reject(id)
-                } else {
-                    Edit::Restore(id)
-                })
-                .expect("others are kept");
-            let analysis = reps(&study, &mut engine);
+            apply(&mut study, nominal_rejected(turn % 2 == 0));
+            let analysis = engine
+                .analyze(&study, &Unobserved)
+                .expect("nobody stops it");
             engine.uncertainty(&analysis, &Unobserved)
         });
     });
@@ -367,7 +388,7 @@ fn requirements(criterion: &mut Criterion) {
     group.bench_function("with intervals", |bencher| {
         bencher.iter(|| engine.requirements(&analysis, &IdentifiedPoles::default(), &Unobserved))
     });
-    group.bench_function("the analysis itself, everything anew", |bencher| {
+    group.bench_function("the analysis itself, nothing cached", |bencher| {
         bencher.iter(|| Engine::with_executor(Box::new(Pool)).analyze(&study, &Unobserved));
     });
     group.finish();

@@ -50,14 +50,14 @@ class Model:
 
 
 # Methods. Each takes a model and returns the timed function, which computes an array
-# [frequency, output, input]. As in gdcm, the time includes reducing the model; it excludes converting
-# the model into the form that a package accepts.
+# [frequency, output, input]. As in gdcm, the time includes reducing the model; it excludes
+# converting the model into the form that a package accepts.
 
 
 def control_slycot(model):
     """python-control with slycot: Hessenberg form (Laub), TB05AD of SLICOT.
 
-    Calling the system does the same, but goes over to `control_alone` silently should slycot fail.
+    Calling the system would do the same, but silently change to `control_alone` if slycot failed.
     """
     system = model.control()
     return lambda: np.moveaxis(system.slycot_laub(model.s), -1, 0)
@@ -104,7 +104,7 @@ def numpy_solve(model):
 
 
 def numpy_modal(model):
-    """NumPy: a sum over the eigenvalues, as accurate as the eigenvectors are independent."""
+    """NumPy: a sum over the eigenvalues, inaccurate if the eigenvectors are nearly dependent."""
 
     def run():
         poles, vectors = np.linalg.eig(model.a)
@@ -162,30 +162,31 @@ def measure(method, model):
 
 
 def compare(path, methods):
-    """Prints the table of one model."""
-    model, own, instruction_set, values = read(path)
+    """Print the table of one model."""
+    model, gdcm_microseconds, instruction_set, values = read(path)
     exact = accurate(model)
     outputs, inputs = model.d.shape
     print(f"\n{len(model.a)} states, {outputs} x {inputs}, {len(model.s)} frequencies")
     print(f"{'':34}{'us a frequency':>15}{'to gdcm':>10}{'relative error':>16}")
 
     def line(name, found, microseconds):
-        ratio, error = microseconds / own, largest_relative_error(found, exact)
+        ratio = microseconds / gdcm_microseconds
+        error = largest_relative_error(found, exact)
         print(f"{name:34}{microseconds:15.2f}{ratio:10.1f}{error:16.1e}", flush=True)
 
-    line(f"gdcm, {instruction_set}", values, own)
+    line(f"gdcm, {instruction_set}", values, gdcm_microseconds)
     for name, method in methods.items():
         line(name, *measure(method, model))
 
 
 def main():
-    """Prints the versions and a table for each model, the smallest first."""
+    """Print the versions and a table for each model, the smallest first."""
     methods = dict(METHODS)
     packages = ["numpy", "scipy", "control", "slycot"]
     if importlib.util.find_spec("slycot") is None:
         del methods["python-control with slycot"]
         packages.remove("slycot")
-    # Silence SciPy's warning that polynomials of high degree are badly conditioned: the errors show it.
+    # SciPy warns that polynomials of high degree are badly conditioned; the table shows the errors.
     warnings.simplefilter("ignore", scipy.signal.BadCoefficients)
     print("Python", platform.python_version(), *(f"{name} {version(name)}" for name in packages))
     files = Path(sys.argv[1]).glob("*-states.json")

@@ -27,6 +27,7 @@ mod stopwatch;
 
 use stopwatch::shortest;
 
+/// Returns the dataset to which the targets apply: 11 conditions, 6 outputs, 4 inputs.
 fn example() -> Arc<Dataset> {
     let path = concat!(
         env!("CARGO_MANIFEST_DIR"),
@@ -37,6 +38,7 @@ fn example() -> Arc<Dataset> {
         .dataset
 }
 
+/// Returns a study of the example with leads, mixing and feedback.
 fn study() -> Study {
     let mut study = Study::new(example());
     study
@@ -48,6 +50,7 @@ fn study() -> Study {
     study
 }
 
+/// Returns the joint fit that the analysis of the study solves.
 fn problem() -> CouplingProblem {
     let analysis = Engine::default()
         .analyze(&study(), &Unobserved)
@@ -70,7 +73,7 @@ fn live_loop(criterion: &mut Criterion) {
         bencher.iter(|| fit_couplings(black_box(&problem), &Pool, &Unobserved));
     });
     let mut turn = 0.0;
-    let mut again = |name: &str, change: &dyn Fn(&mut Study, f64)| {
+    let mut measure = |name: &str, change: &dyn Fn(&mut Study, f64)| {
         let mut engine = Engine::with_executor(Box::new(Pool));
         let mut study = study();
         group.bench_function(name, |bencher| {
@@ -81,7 +84,7 @@ fn live_loop(criterion: &mut Criterion) {
             });
         });
     };
-    again("alpha dragged", &|study, turn| {
+    measure("alpha dragged", &|study, turn| {
         study
             .apply(&setting_table::ALPHA_GAIN.to(1.0 + 1e-6 * turn))
             .expect("within its range");
@@ -94,7 +97,7 @@ fn live_loop(criterion: &mut Criterion) {
         .condition(ConditionId(10))
         .expect("it has a result")
         .representative_name(BundleKind::Physics);
-    let rejected = |study: &mut Study, turn: f64| {
+    let reject_or_restore = |study: &mut Study, turn: f64| {
         let id = ModelId::new(ConditionId(10), BundleKind::Physics, representative);
         let edit = if turn % 2.0 == 0.0 {
             Edit::Reject(id)
@@ -103,12 +106,12 @@ fn live_loop(criterion: &mut Criterion) {
         };
         study.apply(&edit).expect("others are kept");
     };
-    again("model rejected, fitted again", &rejected);
-    again("model rejected, without couplings", &|study, turn| {
+    measure("model rejected, fitted again", &reject_or_restore);
+    measure("model rejected, without couplings", &|study, turn| {
         study
             .apply(&setting_table::COUPLINGS.to(CouplingCorrection::None))
             .expect("a choice");
-        rejected(study, turn);
+        reject_or_restore(study, turn);
     });
     group.sample_size(10);
     group.bench_function(
@@ -129,18 +132,21 @@ fn ratios(_: &mut Criterion) {
     let unknowns = fit_couplings(&problem, &Sequential, &Unobserved)
         .expect("the example can be fitted")
         .unknowns;
-    let ours = shortest(10, || fit_couplings(&problem, &Sequential, &Unobserved));
+    let fit = shortest(10, || fit_couplings(&problem, &Sequential, &Unobserved));
     let plain = shortest(2, || {
-        (0..problem.options.passes).for_each(|_| drop(black_box(plain_solve(&problem, &unknowns))))
+        for _ in 0..problem.options.passes {
+            black_box(plain_solve(&problem, &unknowns));
+        }
     });
     let rows =
         problem.conditions.len() * problem.omega.len() * problem.outputs() * problem.inputs() * 2;
     let products = (problem.options.passes * rows * unknowns.len() * unknowns.len()) as f64;
     println!(
-        "joint fit of {} unknowns, one core: {ours:.2?}; a plain assembly of its {rows} rows takes {:.1} times as long ({:.1} G \
-         multiply-adds, more than the block structure of the fit requires)",
+        "joint fit of {} unknowns, one core: {fit:.2?}; a plain assembly of its {rows} rows takes \
+         {:.1} times as long ({:.1} G multiply-adds, more than the block structure of the fit \
+         requires)",
         unknowns.len(),
-        plain.div_duration_f64(ours),
+        plain.div_duration_f64(fit),
         products / 1e9
     );
 }
@@ -162,6 +168,8 @@ fn plain_solve(problem: &CouplingProblem, unknowns: &[Unknown]) -> Option<DMatri
     Some(normal.cholesky()?.solve(&right))
 }
 
+/// Returns the weighted rows of a condition and their right-hand side: real and imaginary part of
+/// each response at each frequency.
 fn plain_rows(
     problem: &CouplingProblem,
     condition: &CouplingCondition,
@@ -169,17 +177,17 @@ fn plain_rows(
 ) -> (DMatrix<f64>, DMatrix<f64>) {
     let outputs = problem.outputs();
     let inputs = problem.inputs();
-    let at = |of: &FrequencyResponse, k: usize| -> DMatrix<Complex<f64>> {
+    let matrix_at = |response: &FrequencyResponse, k: usize| -> DMatrix<Complex<f64>> {
         DMatrix::from_fn(outputs, inputs, |output, input| {
-            of.curve(Pair::new(output, input))[k]
+            response.curve(Pair::new(output, input))[k]
         })
     };
     let points = problem.omega.len();
     let mut rows = DMatrix::zeros(points * outputs * inputs * 2, unknowns.len());
     let mut wanted = DMatrix::zeros(rows.nrows(), 1);
     for k in 0..points {
-        let f = at(&condition.physics, k);
-        let flight = at(&condition.flight, k);
+        let physics = matrix_at(&condition.physics, k);
+        let flight = matrix_at(&condition.flight, k);
         for (place, (output, input)) in (0..outputs)
             .flat_map(|output| (0..inputs).map(move |input| (output, input)))
             .enumerate()
@@ -188,12 +196,12 @@ fn plain_rows(
             let weight = 1.0 / flight[(output, input)].norm();
             for (column, unknown) in unknowns.iter().enumerate() {
                 let entry = match *unknown {
-                    Unknown::Mixing { to, from, .. } if from == input => f[(output, to)],
+                    Unknown::Mixing { to, from, .. } if from == input => physics[(output, to)],
                     Unknown::Mixing { .. } => continue,
                     Unknown::Feedback {
                         input: to,
-                        output: of,
-                    } => f[(output, to)] * flight[(of, input)],
+                        output: from,
+                    } => physics[(output, to)] * flight[(from, input)],
                 };
                 rows[(row, column)] = weight * entry.re;
                 rows[(row + 1, column)] = weight * entry.im;

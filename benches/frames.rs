@@ -21,14 +21,14 @@ use gdcm_model::dataset::{BundleKind, ConditionId, ModelId};
 use window::Window;
 
 const SIZE: egui::Vec2 = vec2(1600.0, 900.0);
-/// Number of curves, and points on each; the target applies to the first pair.
+/// Number of curves, and number of points on each; the target applies to the first.
 const SIZES: [(usize, usize); 5] = [(25, 500), (25, 5000), (100, 500), (6, 500), (1000, 500)];
 /// Number of measured frames; the table shows the medians of their times.
 const FRAMES: usize = 301;
 
 /// Activity of the engineer from frame to frame.
 #[derive(Clone, Copy, PartialEq)]
-enum Doing {
+enum Activity {
     Nothing,
     /// The pointer crosses the large plot.
     Pointing,
@@ -36,20 +36,28 @@ enum Doing {
     Resizing,
 }
 
+/// Processor time of a frame, and its size.
+struct FrameCost {
+    /// Time to create the shapes.
+    shapes: Duration,
+    tessellation: Duration,
+    vertices: usize,
+}
+
 /// Screen on which frames are drawn and timed.
 struct Screen<'a> {
     ctx: Context,
     draw: Box<dyn FnMut(&mut Ui) + 'a>,
-    doing: Doing,
+    activity: Activity,
     frames: u32,
 }
 
 impl<'a> Screen<'a> {
-    fn new(ctx: Context, doing: Doing, draw: impl FnMut(&mut Ui) + 'a) -> Self {
+    fn new(ctx: Context, activity: Activity, draw: impl FnMut(&mut Ui) + 'a) -> Self {
         let mut screen = Self {
             ctx,
             draw: Box::new(draw),
-            doing,
+            activity,
             frames: 0,
         };
         // In the first frames, sizes still change and texts are laid out.
@@ -63,7 +71,7 @@ impl<'a> Screen<'a> {
     fn shapes(&mut self) -> FullOutput {
         self.frames += 1;
         let step = (self.frames % 100) as f32;
-        let size = if self.doing == Doing::Resizing {
+        let size = if self.activity == Activity::Resizing {
             SIZE - vec2(0.0, step)
         } else {
             SIZE
@@ -74,7 +82,7 @@ impl<'a> Screen<'a> {
             screen_rect: Some(Rect::from_min_size(pos2(0.0, 0.0), size)),
             // Late enough that all animations have ended.
             time: Some(1e4 + f64::from(self.frames) / 60.0),
-            events: if self.doing == Doing::Pointing {
+            events: if self.activity == Activity::Pointing {
                 vec![pointer]
             } else {
                 Vec::new()
@@ -84,9 +92,8 @@ impl<'a> Screen<'a> {
         self.ctx.run_ui(input, &mut self.draw)
     }
 
-    /// Draws a whole frame; returns the times for the shapes and for their tessellation, and the
-    /// number of vertices.
-    fn tessellated_frame(&mut self) -> (Duration, Duration, usize) {
+    /// Draws a whole frame.
+    fn tessellated_frame(&mut self) -> FrameCost {
         let start = Instant::now();
         let mut output = self.shapes();
         let shapes = start.elapsed();
@@ -95,15 +102,17 @@ impl<'a> Screen<'a> {
             .tessellate(std::mem::take(&mut output.shapes), output.pixels_per_point);
         let tessellation = start.elapsed() - shapes;
         output.drop_without_applying_deltas();
-        let vertices = |primitive: &egui::ClippedPrimitive| match &primitive.primitive {
-            egui::epaint::Primitive::Mesh(mesh) => mesh.vertices.len(),
-            egui::epaint::Primitive::Callback(_) => 0,
-        };
-        (
+        let mut vertices = 0;
+        for primitive in black_box(&primitives) {
+            if let egui::epaint::Primitive::Mesh(mesh) = &primitive.primitive {
+                vertices += mesh.vertices.len();
+            }
+        }
+        FrameCost {
             shapes,
             tessellation,
-            black_box(&primitives).iter().map(vertices).sum(),
-        )
+            vertices,
+        }
     }
 }
 
@@ -155,7 +164,7 @@ fn curve(number: usize, points: usize) -> BodeCurve {
 fn bode(curves: &[BodeCurve]) -> Screen<'_> {
     let mut view = BodeView::default();
     let palette = Palette::dark();
-    Screen::new(Context::default(), Doing::Nothing, move |ui| {
+    Screen::new(Context::default(), Activity::Nothing, move |ui| {
         let scene = BodeScene::new("LON → Q", curves, (0.5, 12.0));
         bode_ui(ui, &scene, &mut view, &palette);
     })
@@ -163,12 +172,12 @@ fn bode(curves: &[BodeCurve]) -> Screen<'_> {
 
 /// Returns a screen with the same curves as plain lines in two plots.
 fn plain(curves: &[BodeCurve]) -> Screen<'_> {
-    Screen::new(Context::default(), Doing::Nothing, move |ui| {
+    Screen::new(Context::default(), Activity::Nothing, move |ui| {
         let height = 0.5 * ui.available_height() - 4.0;
-        for (name, values) in [("magnitude", 0), ("phase", 1)] {
+        for name in ["magnitude", "phase"] {
             Plot::new(name).height(height).show(ui, |plot| {
                 for curve in curves {
-                    let values = if values == 0 {
+                    let values = if name == "magnitude" {
                         &curve.magnitude_db
                     } else {
                         &curve.phase_deg
@@ -201,25 +210,27 @@ struct Figures {
 }
 
 impl Figures {
-    fn of(screen: &mut Screen<'_>) -> Self {
-        let frames: Vec<_> = (0..FRAMES).map(|_| screen.tessellated_frame()).collect();
-        let sorted = |of: fn(&(Duration, Duration, usize)) -> Duration| {
-            let mut times: Vec<f64> = frames
-                .iter()
-                .map(|frame| of(frame).as_secs_f64() * 1e3)
-                .collect();
-            times.sort_by(f64::total_cmp);
-            times
-        };
-        let both = sorted(|frame| frame.0 + frame.1);
+    fn measure(screen: &mut Screen<'_>) -> Self {
+        let frames: Vec<FrameCost> = (0..FRAMES).map(|_| screen.tessellated_frame()).collect();
+        let both = sorted_ms(&frames, |frame| frame.shapes + frame.tessellation);
         Self {
-            shapes: sorted(|frame| frame.0)[FRAMES / 2],
-            tessellation: sorted(|frame| frame.1)[FRAMES / 2],
+            shapes: sorted_ms(&frames, |frame| frame.shapes)[FRAMES / 2],
+            tessellation: sorted_ms(&frames, |frame| frame.tessellation)[FRAMES / 2],
             both: both[FRAMES / 2],
             shortest: both[0],
-            vertices: frames[FRAMES - 1].2,
+            vertices: frames[FRAMES - 1].vertices,
         }
     }
+}
+
+/// Returns a time of each frame in ascending order \[ms\].
+fn sorted_ms(frames: &[FrameCost], time: fn(&FrameCost) -> Duration) -> Vec<f64> {
+    let mut times: Vec<f64> = frames
+        .iter()
+        .map(|frame| time(frame).as_secs_f64() * 1e3)
+        .collect();
+    times.sort_by(f64::total_cmp);
+    times
 }
 
 /// Row of the printed table.
@@ -239,7 +250,7 @@ fn frames(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("a frame");
     let mut measure = |name: String, screen: &mut Screen<'_>| {
         group.bench_function(&name, |bencher| bencher.iter(|| screen.tessellated_frame()));
-        (name, Figures::of(screen))
+        (name, Figures::measure(screen))
     };
     for (count, points) in SIZES {
         let curves: Vec<BodeCurve> = (0..count).map(|number| curve(number, points)).collect();
@@ -264,23 +275,23 @@ fn frames(criterion: &mut Criterion) {
         });
     }
     let plain = rows[0].plain;
-    for (tab, doing, what) in [
-        ("Bode", Doing::Nothing, ""),
-        ("Bode", Doing::Pointing, ", pointer moving"),
-        ("Bode", Doing::Resizing, ", resized"),
-        ("Error", Doing::Nothing, ""),
-        ("Error", Doing::Pointing, ", pointer moving"),
-        ("Overview", Doing::Nothing, ""),
-        ("Overview", Doing::Resizing, ", resized"),
-        ("Channels", Doing::Nothing, ""),
-        ("Channels", Doing::Resizing, ", resized"),
-        ("Assessment", Doing::Nothing, ""),
+    for (tab, activity, suffix) in [
+        ("Bode", Activity::Nothing, ""),
+        ("Bode", Activity::Pointing, ", pointer moving"),
+        ("Bode", Activity::Resizing, ", resized"),
+        ("Error", Activity::Nothing, ""),
+        ("Error", Activity::Pointing, ", pointer moving"),
+        ("Overview", Activity::Nothing, ""),
+        ("Overview", Activity::Resizing, ", resized"),
+        ("Channels", Activity::Nothing, ""),
+        ("Channels", Activity::Resizing, ", resized"),
+        ("Assessment", Activity::Nothing, ""),
     ] {
         window.show(tab);
         let (ctx, draw) = window.drawn();
         let (name, figures) = measure(
-            format!("window, {tab}{what}"),
-            &mut Screen::new(ctx, doing, draw),
+            format!("window, {tab}{suffix}"),
+            &mut Screen::new(ctx, activity, draw),
         );
         rows.push(Row {
             name,

@@ -23,13 +23,14 @@ use gdcm_sysid::identification::identify::identify;
 use gdcm_sysid::identification::{Options, Preparation};
 use gdcm_sysid::records::{LaidOutRecord, RecordChannels, TimeSettings};
 
+/// Ignores the progress of reading.
 struct Silent;
 
 impl FolderProgress for Silent {
     fn reading(&self, _: usize, _: usize, _: &str) {}
 }
 
-/// Records the start time of each step.
+/// Records when each step of an identification begins \[ms\].
 struct Stages {
     start: Instant,
     steps: Mutex<Vec<(f64, String)>>,
@@ -48,6 +49,20 @@ impl Stages {
     fn now_ms(&self) -> f64 {
         1e3 * self.start.elapsed().as_secs_f64()
     }
+
+    fn first_model_ms(&self) -> f64 {
+        let first_model = self.first_model.lock().expect("nothing panics");
+        first_model.unwrap_or(f64::NAN)
+    }
+
+    /// Prints the duration of each step of an identification that ended at `end_ms`.
+    fn print(&self, end_ms: f64) {
+        let steps = self.steps.lock().expect("nothing panics");
+        for (number, (start_ms, step)) in steps.iter().enumerate() {
+            let next_ms = steps.get(number + 1).map_or(end_ms, |next| next.0);
+            println!("    {:6.1} ms  {step}", next_ms - start_ms);
+        }
+    }
 }
 
 impl Progress for Stages {
@@ -57,11 +72,11 @@ impl Progress for Stages {
 
     fn advanced(&self, _done: usize, _total: usize) {}
 
-    fn step(&self, what: &str) {
+    fn step(&self, name: &str) {
         self.steps
             .lock()
             .expect("nothing panics")
-            .push((self.now_ms(), what.to_owned()));
+            .push((self.now_ms(), name.to_owned()));
     }
 
     fn first_model(&self, _model: &StateSpace) {
@@ -86,13 +101,16 @@ fn main() {
     let preparation = Preparation::new(&borrowed(&inputs), &borrowed(&outputs));
     let band = dataset.band();
     let mut all_ms = 0.0;
-    let mut worst = 0.0f64;
+    let mut worst_ratio = 0.0f64;
     for condition in dataset.conditions() {
-        let own = records
+        let condition_records = records
             .iter()
             .filter(|record| record.guess.condition_of(&dataset) == Some(condition.id()));
-        let request =
-            IdentificationRequest::from_used(own, preparation.clone(), [band.min(), band.max()]);
+        let request = IdentificationRequest::from_used(
+            condition_records,
+            preparation.clone(),
+            [band.min(), band.max()],
+        );
         let request = request.expect("every condition has records");
         let stages = Stages::new();
         let found = request
@@ -101,30 +119,21 @@ fn main() {
         let ms = stages.now_ms();
         all_ms += ms;
         let ratio = found.held_out_cost.unwrap_or(f64::NAN) / found.cost;
-        worst = worst.max(ratio);
+        worst_ratio = worst_ratio.max(ratio);
         println!(
-            "condition {:2}: order {:2}, J/dof {:.3}, held-out cost {ratio:.2} times as large; first model {:4.0} ms, total {ms:4.0} ms",
+            "condition {:2}: order {:2}, J/dof {:.3}, held-out cost {ratio:.2} times as large; \
+             first model {:4.0} ms, total {ms:4.0} ms",
             condition.id(),
             found.refined.order().unwrap_or_default(),
             found.cost,
-            stages
-                .first_model
-                .lock()
-                .expect("nothing panics")
-                .unwrap_or(f64::NAN),
+            stages.first_model_ms(),
         );
         if condition.id() == ConditionId(10) {
-            let steps = stages.steps.lock().expect("nothing panics");
-            for (at, next) in steps
-                .iter()
-                .zip(steps.iter().skip(1).map(|next| next.0).chain([ms]))
-            {
-                println!("    {:6.1} ms  {}", next - at.0, at.1);
-            }
+            stages.print(ms);
         }
     }
     println!(
-        "all {} conditions {:.1} s; worst held-out ratio {worst:.2}",
+        "all {} conditions {:.1} s; worst held-out ratio {worst_ratio:.2}",
         dataset.conditions().len(),
         1e-3 * all_ms
     );
@@ -205,7 +214,8 @@ impl SimulatedFlight {
         );
     }
 
-    /// Simulates sweeps of the inputs in turn, with noise of a fiftieth of each output.
+    /// Simulates sweeps of the inputs in turn. All inputs have additional noise of up to a tenth of
+    /// the sweep, the outputs of up to a fiftieth of their rms.
     fn fly(&self) -> Vec<FlightRecord> {
         let mut random = UniformNoise(1);
         let model = self.aircraft(&mut random);
@@ -217,10 +227,10 @@ impl SimulatedFlight {
             let swept = number % self.inputs;
             let mut inputs = DMatrix::zeros(samples, self.inputs);
             for k in 0..samples {
-                // A logarithmic sweep from 0.08 to 2.4 Hz.
-                let rate = 30f64.ln();
+                // A logarithmic sweep from 0.08 to 2.4 Hz, a ratio of 30.
+                let ln_ratio = 30f64.ln();
                 let share = k as f64 / samples as f64;
-                let turns = 0.08 * self.seconds / rate * ((rate * share).exp() - 1.0);
+                let turns = 0.08 * self.seconds / ln_ratio * ((ln_ratio * share).exp() - 1.0);
                 inputs[(k, swept)] = (std::f64::consts::TAU * turns).sin();
                 for input in 0..self.inputs {
                     inputs[(k, input)] += 0.1 * random.next();
@@ -241,13 +251,14 @@ impl SimulatedFlight {
         records
     }
 
-    /// Returns a stable aircraft with seven oscillations between 0.8 and 15 rad/s.
+    /// Returns a stable aircraft with seven modes of damping ratio 0.5 from 0.8 to 15 rad/s.
     fn aircraft(&self, random: &mut UniformNoise) -> StateSpace {
         let mut a = DMatrix::zeros(14, 14);
-        for (at, omega) in [0.8, 1.5, 2.5, 4.0, 6.0, 9.0, 15.0].into_iter().enumerate() {
-            a[(2 * at, 2 * at + 1)] = omega;
-            a[(2 * at + 1, 2 * at)] = -omega;
-            a[(2 * at + 1, 2 * at + 1)] = -omega;
+        for (mode, omega) in [0.8, 1.5, 2.5, 4.0, 6.0, 9.0, 15.0].into_iter().enumerate() {
+            let row = 2 * mode;
+            a[(row, row + 1)] = omega;
+            a[(row + 1, row)] = -omega;
+            a[(row + 1, row + 1)] = -omega;
         }
         let b = DMatrix::from_fn(14, self.inputs, |_, _| random.next());
         let c = DMatrix::from_fn(self.outputs, 14, |_, _| random.next());

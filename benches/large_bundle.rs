@@ -101,7 +101,9 @@ fn main() {
     let band = Band::new(0.1, 100.0).expect("a band");
     let grid = FrequencyGrid::logarithmic(band, FREQUENCIES);
     let mut measuring = PairTable::filled(OUTPUTS, INPUTS, false);
-    (0..INPUTS).for_each(|channel| measuring[Pair::new(channel, channel)] = true);
+    for channel in 0..INPUTS {
+        measuring[Pair::new(channel, channel)] = true;
+    }
     let responses = |executor: &dyn Executor| {
         let execution = Execution::new(executor, &Unobserved, MODELS);
         ConditionResponses::compute(&condition, (band, FREQUENCIES), &execution)
@@ -130,16 +132,17 @@ fn main() {
     });
     group.finish();
     criterion.final_summary();
-    let together = shortest(3, || responses(&Pool));
-    let alone = shortest(3, || responses(&Sequential));
+    let all_cores = shortest(3, || responses(&Pool));
+    let one_core = shortest(3, || responses(&Sequential));
     let dense = shortest(3, || dense_responses(&model(STATES), grid.omega())) * MODELS as u32;
     println!(
-        "responses: {together:.2?} on all cores, {alone:.2?} on one; a dense LU for each would take {dense:.1?} on one"
+        "responses: {all_cores:.2?} on all cores, {one_core:.2?} on one; a dense LU for each would \
+         take {dense:.1?} on one"
     );
     println!(
-        "ratio {:.0} on one core, {:.0} on all",
-        dense.as_secs_f64() / alone.as_secs_f64(),
-        dense.as_secs_f64() / together.as_secs_f64()
+        "dense LU takes {:.0} times as long as one core, {:.0} times as long as all cores",
+        dense.as_secs_f64() / one_core.as_secs_f64(),
+        dense.as_secs_f64() / all_cores.as_secs_f64()
     );
     if let Some(memory) = peak_memory_mb() {
         println!("peak memory: {memory:.0} MB, including two sets of responses and the models");

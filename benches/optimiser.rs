@@ -1,8 +1,6 @@
 //! `cargo bench --bench optimiser`: time for the gains with their optimality proof and for the
 //! delays, compared with plain methods for the same problems in the same run.
 
-// `criterion_group!` generates a public function, to which no doc comment can be added.
-
 use std::hint::black_box;
 use std::time::Duration;
 
@@ -17,10 +15,13 @@ use gdcm_method::correction::{Problem, ProofBudget, Solution};
 mod instances;
 mod plain;
 
+/// Returns the solution with its optimality proof; `None` if the problem has none.
 fn solved(problem: &Problem) -> Option<Solution> {
     solve(problem, ProofBudget::default(), &|| false).ok()
 }
 
+/// Measures each realistic ("base") and each wide problem of `gain-instances.json`, beside a plain
+/// method.
 fn gains(criterion: &mut Criterion) {
     for kind in ["base", "wide"] {
         let mut group = criterion.benchmark_group(format!("gains/{kind}"));

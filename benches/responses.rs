@@ -22,7 +22,7 @@ use nalgebra::{Complex, DMatrix};
 use pulp::{Arch, Simd, WithSimd};
 use serde_json::json;
 
-use gdcm_model::dataset::{Band, Pair, StateSpace};
+use gdcm_model::dataset::{Band, StateSpace};
 use gdcm_model::response::elimination::evaluate_on;
 use gdcm_model::response::{FrequencyGrid, FrequencyResponse, evaluate};
 
@@ -51,7 +51,8 @@ fn instruction_sets() -> Vec<(&'static str, Arch)> {
     sets
 }
 
-/// Independent chains of multiply-adds; returns the number of operations.
+/// Independent chains of multiply-adds, which run at the peak rate; returns the number of
+/// operations.
 struct MultiplyAdds;
 
 impl WithSimd for MultiplyAdds {
@@ -76,6 +77,7 @@ impl WithSimd for MultiplyAdds {
     }
 }
 
+/// Returns the multiply-adds of one frequency, by the formula above, with n = `order`.
 fn multiply_adds(order: usize) -> usize {
     order * INPUTS * (order + 2 * OUTPUTS)
 }
@@ -89,14 +91,14 @@ fn compare(order: usize, omega: &[f64]) {
             shortest(400, || evaluate_on(arch, &model, omega)).as_secs_f64() / FREQUENCIES as f64;
         let peak = arch.dispatch(MultiplyAdds)
             / shortest(400, || arch.dispatch(MultiplyAdds)).as_secs_f64();
-        let part = multiply_adds(order) as f64 / seconds / peak;
+        let share = multiply_adds(order) as f64 / seconds / peak;
         let time = seconds * 1e6;
         let ratio = dense / seconds;
         let peak = peak * 1e-9;
         println!(
             "{order:6}  {name:<8} {time:8.3} {:10.2} {ratio:8.1} {peak:12.1} {:7.0} %",
             dense * 1e6,
-            part * 100.0
+            share * 100.0
         );
     }
 }
@@ -105,10 +107,9 @@ fn compare(order: usize, omega: &[f64]) {
 fn scaling(omega: &[f64]) {
     let models: Vec<StateSpace> = vec![model(30); 64];
     let run = |models: &[StateSpace]| {
-        models
-            .iter()
-            .map(|model| evaluate(model, omega))
-            .for_each(|table| drop(black_box(table)))
+        for model in models {
+            black_box(evaluate(model, omega));
+        }
     };
     let one = shortest(20, || run(&models));
     let two = shortest(20, || {
@@ -149,19 +150,18 @@ fn rows(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {
         .collect()
 }
 
+/// Returns a part of each value, with indices `[frequency][output][input]`.
 fn by_frequency(
     response: &FrequencyResponse,
     part: impl Fn(Complex<f64>) -> f64,
 ) -> Vec<Vec<Vec<f64>>> {
-    let curves = response.curves();
-    let at = |k, output| {
-        (0..INPUTS)
-            .map(|input| part(curves[Pair::new(output, input)][k]))
-            .collect()
-    };
-    (0..FREQUENCIES)
-        .map(|k| (0..OUTPUTS).map(|output| at(k, output)).collect())
-        .collect()
+    let mut values = vec![vec![vec![0.0; INPUTS]; OUTPUTS]; FREQUENCIES];
+    for (pair, curve) in response.curves().iter() {
+        for (k, value) in curve.iter().enumerate() {
+            values[k][pair.output][pair.input] = part(*value);
+        }
+    }
+    values
 }
 
 fn main() {
@@ -182,11 +182,13 @@ fn main() {
     }
     criterion.final_summary();
     println!("states  set            us   dense LU    ratio  peak GFMA/s  of peak");
-    ORDERS.into_iter().for_each(|order| compare(order, omega));
+    for order in ORDERS {
+        compare(order, omega);
+    }
     scaling(omega);
     if let Some(folder) = std::env::var_os("GDCM_EXPORT_RESPONSES") {
-        ORDERS
-            .into_iter()
-            .for_each(|order| export(Path::new(&folder), order, omega));
+        for order in ORDERS {
+            export(Path::new(&folder), order, omega);
+        }
     }
 }

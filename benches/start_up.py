@@ -3,11 +3,13 @@
 
     python3 benches/start_up.py [RUNS] [PROGRAM [ARGUMENT ...]]
 
-Runs the program (target/release/gdcm) under a virtual display without a graphics processor and looks at the screen again and
-again until nothing changes. A picture is complete but for error bars where less than 1 % of its bytes differ by a quarter of the
-scale from the last one, and complete where less than 1 in 10,000 does: curves at rest become one image later, which differs less.
-Needs Linux with Xvfb and xwd (Debian: xvfb, x11-apps). The shortest and the median of the runs are printed: the first run reads the
-program from disk.
+Runs the program (target/release/gdcm) under a virtual display without a graphics processor, and
+takes screenshots for three seconds. A picture is complete except for error bars if less than 1 % of
+its bytes differ visibly from the last screenshot, and complete if less than 1 in 10,000 does. The
+limit is not zero: curves at rest are replaced by an image later, which differs by less. Prints the
+shortest and the median time of the runs, because the first run reads the program from disk.
+
+Needs Linux with Xvfb and xwd (Debian: xvfb, x11-apps).
 """
 
 import os
@@ -17,9 +19,9 @@ import sys
 import time
 
 SCREEN = "1440x900x24"
-# Any later change in the window is not part of the start.
+# Changes of the window after this time are not part of the start.
 SETTLED_AFTER_S = 3.0
-# Visible difference of a colour value: a quarter of its range, 0 to 255.
+# Smallest visible difference of a colour value: a quarter of its range, 0 to 255.
 VISIBLE = 64
 
 
@@ -35,7 +37,8 @@ def start_display():
 
 def picture(environment):
     """Return the bytes of a screenshot."""
-    return subprocess.run(["xwd", "-root", "-silent"], env=environment, capture_output=True, check=True).stdout
+    command = ["xwd", "-root", "-silent"]
+    return subprocess.run(command, env=environment, capture_output=True, check=True).stdout
 
 
 def difference(picture, last):
@@ -53,22 +56,33 @@ def peak_memory_mb(process):
 
 
 def measure(command, environment):
-    """Start once; return the seconds to the picture without and with error bars, and the peak memory
-    [MB]."""
+    """Start the program once.
+
+    Return the seconds to the picture without and with error bars, and the peak memory [MB].
+    """
     start = time.monotonic()
     program = subprocess.Popen(command, env=environment, stderr=subprocess.DEVNULL)
     try:
-        seen = []
+        # Each new picture, and the seconds after which it was seen.
+        pictures = []
         while time.monotonic() - start < SETTLED_AFTER_S:
             shown = picture(environment)
-            if not seen or shown != seen[-1][1]:
-                seen.append((time.monotonic() - start, shown))
+            if not pictures or shown != pictures[-1][1]:
+                pictures.append((time.monotonic() - start, shown))
         memory = peak_memory_mb(program)
     finally:
         program.kill()
         program.wait()
-    differences = [(since, difference(shown, seen[-1][1])) for since, shown in seen]
-    return *(next(since for since, of in differences if of < limit) for limit in (1e-2, 1e-4)), memory
+    last = pictures[-1][1]
+    differences = [(seconds, difference(shown, last)) for seconds, shown in pictures]
+    without_bars = first_below(differences, 1e-2)
+    complete = first_below(differences, 1e-4)
+    return without_bars, complete, memory
+
+
+def first_below(differences, limit):
+    """Return the seconds to the first picture whose difference is below the limit."""
+    return next(seconds for seconds, share in differences if share < limit)
 
 
 def main():
@@ -76,15 +90,17 @@ def main():
     runs = int(sys.argv[1]) if len(sys.argv) > 1 else 5
     command = sys.argv[2:] or ["target/release/gdcm"]
     display, name = start_display()
-    environment = {key: value for key, value in os.environ.items() if key != "WAYLAND_DISPLAY"} | {"DISPLAY": name}
+    environment = dict(os.environ, DISPLAY=name)
+    environment.pop("WAYLAND_DISPLAY", None)
     try:
         results = [measure(command, environment) for _ in range(runs)]
     finally:
         display.kill()
         display.wait()
     without_bars, complete, memory = zip(*results)
-    for what, seconds in (("complete but for error bars", without_bars), ("complete", complete)):
-        print(f"{what}: {min(seconds):.2f} s at best, {statistics.median(seconds):.2f} s in the median")
+    for name, seconds in (("complete except for error bars", without_bars), ("complete", complete)):
+        median = statistics.median(seconds)
+        print(f"{name}: shortest {min(seconds):.2f} s, median {median:.2f} s")
     print(f"memory: {max(memory):.0f} MB at most")
 
 

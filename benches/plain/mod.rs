@@ -14,7 +14,7 @@ const PENALTY: f64 = 100.0;
 pub fn projected_gradient(problem: &Problem) -> f64 {
     let outputs = problem.delta.outputs();
     let inputs = problem.delta.inputs();
-    let slope = |point: &[f64], gradient: &mut [f64]| {
+    let evaluate = |point: &[f64], gradient: &mut [f64]| {
         gradient.fill(0.0);
         let mut value = 0.0;
         for (pair, delta) in problem.delta.iter() {
@@ -37,7 +37,7 @@ pub fn projected_gradient(problem: &Problem) -> f64 {
     let point = descend(
         vec![1.0; inputs + outputs],
         (problem.bounds.lower, problem.bounds.upper),
-        slope,
+        evaluate,
     );
     problem.objective_at(&point[..inputs], &point[inputs..])
 }
@@ -47,7 +47,7 @@ pub fn projected_gradient(problem: &Problem) -> f64 {
 pub fn delay_gradient(problem: &Problem) -> f64 {
     let outputs = problem.delta.outputs();
     let inputs = problem.delta.inputs();
-    let slope = |point: &[f64], gradient: &mut [f64]| {
+    let evaluate = |point: &[f64], gradient: &mut [f64]| {
         gradient.fill(0.0);
         let mut value = 0.0;
         for (pair, delta) in problem.delta.iter() {
@@ -68,19 +68,21 @@ pub fn delay_gradient(problem: &Problem) -> f64 {
     let point = descend(
         vec![0.0; inputs + outputs],
         (0.0, 10.0 * problem.bounds.upper),
-        slope,
+        evaluate,
     );
     problem.objective_at(&point[..inputs], &point[inputs..])
 }
 
+/// Descends from `point` within `lower` and `upper`; `evaluate` returns the value at a point, and
+/// writes its gradient. Steps grow by half after a success, and shrink to 0.4 after a failure.
 fn descend(
     mut point: Vec<f64>,
     (lower, upper): (f64, f64),
-    slope: impl Fn(&[f64], &mut [f64]) -> f64,
+    evaluate: impl Fn(&[f64], &mut [f64]) -> f64,
 ) -> Vec<f64> {
     let mut gradient = vec![0.0; point.len()];
     let mut next_gradient = gradient.clone();
-    let mut value = slope(&point, &mut gradient);
+    let mut value = evaluate(&point, &mut gradient);
     let mut stride = 1e-2;
     for _ in 0..STEPS {
         let next: Vec<f64> = point
@@ -88,7 +90,7 @@ fn descend(
             .zip(&gradient)
             .map(|(at, slope)| (at - stride * slope).clamp(lower, upper))
             .collect();
-        let reached = slope(&next, &mut next_gradient);
+        let reached = evaluate(&next, &mut next_gradient);
         if reached < value {
             let done = value - reached <= 1e-10 * value;
             point = next;

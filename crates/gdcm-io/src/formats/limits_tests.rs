@@ -1,4 +1,5 @@
-//! Compares the limits in `docs/limits.md` with those of the program.
+//! Compares the limits in `docs/limits.md` with those of the program. With the environment variable
+//! `GDCM_WRITE_FILES`, the tables of the page are rewritten instead.
 
 use gdcm_model::dataset::limits;
 use gdcm_model::dataset::limits::{
@@ -113,12 +114,12 @@ fn table_rows(part: &str) -> &str {
 }
 
 #[test]
-fn the_limits_of_the_documentation_are_those_of_the_program() {
+fn limits_in_the_documentation_match_the_program() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/limits.md");
     let text = std::fs::read_to_string(path).unwrap();
     let mut parts: Vec<&str> = text.split_inclusive("|---|\n").collect();
     let [_, files, settings] = parts.as_mut_slice() else {
-        panic!("two tables")
+        panic!("{path}: expected two tables, of files and of settings")
     };
     let files = table_rows(files);
     let settings = table_rows(settings);
@@ -131,6 +132,6 @@ fn the_limits_of_the_documentation_are_those_of_the_program() {
         .unwrap();
         return;
     }
-    assert_eq!(files, file_rows());
-    assert_eq!(settings, setting_rows());
+    assert_eq!(files, file_rows(), "limits of files");
+    assert_eq!(settings, setting_rows(), "ranges of settings");
 }

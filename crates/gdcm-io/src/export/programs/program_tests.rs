@@ -26,9 +26,8 @@ use crate::files::dataset_file::embedded_example;
 /// treatment of delays.
 fn analyses() -> Vec<(String, Analysis)> {
     let mut engine = Engine::default();
-    let kinds = [ScheduleKind::Polynomial { degree: 2 }, ScheduleKind::Table];
     let mut analyses = Vec::new();
-    for kind in kinds {
+    for kind in [ScheduleKind::Polynomial { degree: 2 }, ScheduleKind::Table] {
         for quantity in [ScheduledQuantity::LnGain, ScheduledQuantity::Gain] {
             for delays in [false, true] {
                 let mut study = Study::new(embedded_example().unwrap().dataset);
@@ -71,19 +70,17 @@ fn analyses() -> Vec<(String, Analysis)> {
     ));
     // Conditions at a single airspeed, so that the airspeed range has zero width.
     let mut study = Study::new(embedded_example().unwrap().dataset);
-    let conditions = study.dataset.clone();
-    let at = conditions.conditions()[3].flight_state().airspeed_kt;
-    for condition in conditions
-        .conditions()
-        .iter()
-        .filter(|other| other.flight_state().airspeed_kt != at)
-    {
-        study
-            .apply(&Edit::SetScheduled {
-                condition: condition.id(),
-                scheduled: false,
-            })
-            .unwrap();
+    let dataset = study.dataset.clone();
+    let airspeed_kt = dataset.conditions()[3].flight_state().airspeed_kt;
+    for condition in dataset.conditions() {
+        if condition.flight_state().airspeed_kt != airspeed_kt {
+            study
+                .apply(&Edit::SetScheduled {
+                    condition: condition.id(),
+                    scheduled: false,
+                })
+                .unwrap();
+        }
     }
     analyses.push((
         "one airspeed".to_owned(),
@@ -92,7 +89,8 @@ fn analyses() -> Vec<(String, Analysis)> {
     analyses
 }
 
-/// Returns the schedule of an analysis as a program; `name` is the name of its file.
+/// Returns the schedule of an analysis as a program in the language with the extension `language`;
+/// `name` is the stem of its file, by default "c".
 fn program(language: &str, analysis: &Analysis, name: &str) -> String {
     let source = &ExportSource {
         name: NASTY[0].to_owned(),
@@ -128,26 +126,26 @@ fn airspeeds() -> Vec<f64> {
 }
 
 /// Returns the scheduled values, in the order in which the exported programs print them.
-fn expected(analysis: &Analysis) -> Vec<f64> {
+fn scheduled_values(analysis: &Analysis) -> Vec<f64> {
     let schedule = analysis.schedule.as_ref().unwrap();
-    let values = |airspeed: f64| {
-        let at = schedule.at(airspeed);
-        [
-            at.input_gains,
-            at.output_gains,
-            at.input_delays_s,
-            at.output_delays_s,
-        ]
-        .concat()
-    };
-    airspeeds().into_iter().flat_map(values).collect()
+    let mut values = Vec::new();
+    for airspeed_kt in airspeeds() {
+        let at = schedule.at(airspeed_kt);
+        values.extend(at.input_gains);
+        values.extend(at.output_gains);
+        values.extend(at.input_delays_s);
+        values.extend(at.output_delays_s);
+    }
+    values
 }
 
-fn assert_same(words: &str, found: &[f64], expected: &[f64]) {
+/// Asserts agreement within the rounding of a few operations, which other languages may order
+/// differently.
+fn assert_values(words: &str, found: &[f64], expected: &[f64]) {
     assert_eq!(found.len(), expected.len(), "{words}");
     for (index, (a, b)) in found.iter().zip(expected).enumerate() {
-        // The absolute tolerance is needed where a delay is clipped at zero; differences below a
-        // femtosecond are negligible.
+        // The absolute tolerance is needed where a delay is clipped at zero; it is far below a
+        // femtosecond.
         assert!(
             (a - b).abs() <= 1e-12 * b.abs() + 1e-16,
             "{words}, value {index}: {a} instead of {b}"
@@ -178,10 +176,32 @@ fn assert_run(
         .split_whitespace()
         .map(|word| word.parse().unwrap())
         .collect();
-    assert_same(&format!("{program}, {words}"), &found, expected);
+    assert_values(&format!("{program}, {words}"), &found, expected);
 }
 
-fn is_there(program: &str) -> bool {
+/// Compiles `source` as strict C99, where warnings are errors and `warnings` are enabled besides
+/// the usual ones, and compares the output of the program with `expected`.
+fn assert_c_run(words: &str, source: &str, warnings: &[&str], expected: &[f64]) {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("main.c"), source).unwrap();
+    let built = Command::new("cc")
+        .args(["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic"])
+        .args(warnings)
+        .args(["-o", "main", "main.c", "-lm"])
+        .current_dir(&folder)
+        .output()
+        .unwrap();
+    assert!(
+        built.status.success(),
+        "{words}: {}",
+        String::from_utf8_lossy(&built.stderr)
+    );
+    let program = folder.path().join("main").display().to_string();
+    assert_run(words, &program, &[], folder.path(), expected);
+}
+
+/// Returns whether a program is installed; if not, the skipped check is reported on stderr.
+fn is_installed(program: &str) -> bool {
     let found = Command::new(program).arg("--version").output().is_ok();
     if !found {
         eprintln!(
@@ -191,7 +211,8 @@ fn is_there(program: &str) -> bool {
     found
 }
 
-fn listed() -> String {
+/// Returns [`airspeeds`] separated by commas, for a list in any of the languages.
+fn airspeed_list() -> String {
     airspeeds()
         .iter()
         .map(|kt| format!("{kt:?}"))
@@ -200,7 +221,7 @@ fn listed() -> String {
 }
 
 #[test]
-fn unscheduled_delays_are_zero_with_a_note() {
+fn programs_without_scheduled_delays_contain_a_note() {
     for (words, analysis) in analyses() {
         let settings = &analysis.study.settings;
         let has_delays = settings.schedule_delays == DelayScheduling::Always
@@ -214,13 +235,14 @@ fn unscheduled_delays_are_zero_with_a_note() {
     }
 }
 
-/// Returns whether a line has the limit of the leads, and the frequency of their gain above it.
+/// Returns whether a line states the frequency limit of the leads, which is the upper band edge,
+/// and the frequency above it at which their gain is given, ten times the limit.
 fn has_limit(line: &str) -> bool {
     line.contains(" 12 rad/s") && line.contains(" 120 rad/s")
 }
 
 #[test]
-fn leads_say_their_limit_and_their_gain_above_the_band_in_ascii() {
+fn exports_with_leads_state_their_frequency_limit_and_the_gain_above_it() {
     for (words, analysis) in analyses() {
         let price = analysis.schedule.as_ref().unwrap().lead_price();
         assert_eq!(
@@ -234,15 +256,16 @@ fn leads_say_their_limit_and_their_gain_above_the_band_in_ascii() {
             ("h", "GDCM_NOT_VALID_ABOVE_RAD_S 1.2"),
         ] {
             let text = program(language, &analysis, "k");
-            let says = text.lines().any(has_limit);
-            let has_number = text.contains(limit);
-            assert!(
-                text.is_ascii() && says == price.is_some(),
-                "{words}: {text}"
+            assert!(text.is_ascii(), "{words}, {language}: {text}");
+            assert_eq!(
+                text.lines().any(has_limit),
+                price.is_some(),
+                "{words}, {language}: {text}"
             );
+            // A MATLAB function has no constant for the limit.
             assert!(
-                limit.is_empty() || has_number == price.is_some(),
-                "{words}: {text}"
+                limit.is_empty() || text.contains(limit) == price.is_some(),
+                "{words}, {language}: {text}"
             );
         }
         let source = ExportSource {
@@ -262,9 +285,8 @@ fn leads_say_their_limit_and_their_gain_above_the_band_in_ascii() {
             let Ok(exported) = (exporter.export)(&export) else {
                 continue;
             };
-            let says = exported.remarks.iter().any(|remark| has_limit(remark));
             assert_eq!(
-                says,
+                exported.remarks.iter().any(|remark| has_limit(remark)),
                 price.is_some(),
                 "{words}, {}: {:?}",
                 exporter.name,
@@ -275,8 +297,8 @@ fn leads_say_their_limit_and_their_gain_above_the_band_in_ascii() {
 }
 
 #[test]
-fn a_module_of_python_gives_the_programs_own_numbers() {
-    if !is_there("python3") {
+fn an_exported_python_module_computes_the_schedule() {
+    if !is_installed("python3") {
         return;
     }
     for (words, analysis) in analyses() {
@@ -285,25 +307,24 @@ fn a_module_of_python_gives_the_programs_own_numbers() {
         let program = format!(
             "import c\nfor a in [{}]:\n    mi, mo, ti, to = c.gdcm_correction(a)\n    \
              print(*[repr(m[k][k]) for m in (mi, mo) for k in range(len(m))], *map(repr, ti + to))",
-            listed()
+            airspeed_list()
         );
         assert_run(
             &words,
             "python3",
             &["-c", &program],
             folder.path(),
-            &expected(&analysis),
+            &scheduled_values(&analysis),
         );
     }
 }
 
 #[test]
-fn a_header_of_c_gives_the_programs_own_numbers() {
-    if !is_there("cc") {
+fn an_exported_c_header_computes_the_schedule() {
+    if !is_installed("cc") {
         return;
     }
     for (words, analysis) in analyses() {
-        let folder = tempfile::tempdir().unwrap();
         let header = program("h", &analysis, "");
         let main = format!(
             "{header}\n#include <stdio.h>\nint main(void) {{ static const double s[] = {{{}}};\n\
@@ -312,39 +333,15 @@ fn a_header_of_c_gives_the_programs_own_numbers() {
              gdcm_correction(s[k], v, v + GDCM_INPUT_COUNT, v + GDCM_INPUT_COUNT + GDCM_OUTPUT_COUNT,\n\
              v + 2 * GDCM_INPUT_COUNT + GDCM_OUTPUT_COUNT);\n\
              for (j = 0; j < sizeof v / sizeof *v; j++) printf(\"%.17g \", v[j]); }}\nreturn 0; }}\n",
-            listed()
+            airspeed_list()
         );
-        std::fs::write(folder.path().join("main.c"), main).unwrap();
-        let flags = [
-            "-std=c99",
-            "-Wall",
-            "-Wextra",
-            "-Wshadow",
-            "-Werror",
-            "-pedantic",
-            "-o",
-            "main",
-            "main.c",
-            "-lm",
-        ];
-        let built = Command::new("cc")
-            .args(flags)
-            .current_dir(&folder)
-            .output()
-            .unwrap();
-        assert!(
-            built.status.success(),
-            "{words}: {}",
-            String::from_utf8_lossy(&built.stderr)
-        );
-        let program = folder.path().join("main").display().to_string();
-        assert_run(&words, &program, &[], folder.path(), &expected(&analysis));
+        assert_c_run(&words, &main, &["-Wshadow"], &scheduled_values(&analysis));
     }
 }
 
 #[test]
-fn a_function_of_matlab_gives_the_programs_own_numbers() {
-    if !is_there("octave-cli") {
+fn an_exported_matlab_function_computes_the_schedule() {
+    if !is_installed("octave-cli") {
         return;
     }
     for (words, analysis) in analyses() {
@@ -353,20 +350,20 @@ fn a_function_of_matlab_gives_the_programs_own_numbers() {
         std::fs::write(folder.path().join("my_study.m"), function).unwrap();
         let program = format!(
             "for s = [{}], [Mi, Mo, ti, to] = my_study(s); printf('%.17g ', [diag(Mi); diag(Mo); ti; to]); end",
-            listed()
+            airspeed_list()
         );
         assert_run(
             &words,
             "octave-cli",
             &["--eval", &program],
             folder.path(),
-            &expected(&analysis),
+            &scheduled_values(&analysis),
         );
     }
 }
 
 /// Returns the example with mixing and feedback and without a phase correction.
-fn coupled() -> Analysis {
+fn analysis_with_couplings() -> Analysis {
     let mut study = Study::new(embedded_example().unwrap().dataset);
     study
         .apply(&setting_table::PHASE.to(PhaseCorrection::None))
@@ -384,19 +381,15 @@ fn feed_through() -> DMatrix<f64> {
     })
 }
 
-fn list_of_rows(of: &DMatrix<f64>, [open, close]: [char; 2]) -> String {
-    let row = |row: usize| {
-        let values: Vec<String> = of
-            .row(row)
-            .iter()
-            .map(|value| format!("{value:?}"))
-            .collect();
-        format!("{open}{}{close}", values.join(", "))
-    };
-    format!(
-        "{open}{}{close}",
-        (0..of.nrows()).map(row).collect::<Vec<_>>().join(", ")
-    )
+/// Formats a matrix as a list of its rows, with the brackets of a language, such as
+/// "[[1.0, 2.0], [3.0, 4.0]]".
+fn nested_list(matrix: &DMatrix<f64>, [open, close]: [char; 2]) -> String {
+    let mut rows = Vec::new();
+    for row in matrix.row_iter() {
+        let values: Vec<String> = row.iter().map(|value| format!("{value:?}")).collect();
+        rows.push(format!("{open}{}{close}", values.join(", ")));
+    }
+    format!("{open}{}{close}", rows.join(", "))
 }
 
 /// Returns three matrices at each airspeed, row by row: the mixing, the feedback, and the feedback
@@ -408,25 +401,28 @@ fn expected_couplings(analysis: &Analysis) -> Vec<f64> {
         * (DMatrix::identity(6, 6) - feed_through() * feedback)
             .try_inverse()
             .unwrap();
-    let values = |airspeed: f64| {
-        let of = [&matrices.normalised_mixing(airspeed), feedback, &closed];
-        of.map(|of| of.transpose().as_slice().to_vec()).concat()
-    };
-    airspeeds().into_iter().flat_map(values).collect()
+    let mut values = Vec::new();
+    for airspeed_kt in airspeeds() {
+        for matrix in [&matrices.normalised_mixing(airspeed_kt), feedback, &closed] {
+            // nalgebra stores columns, so the transpose lists the rows.
+            values.extend_from_slice(matrix.transpose().as_slice());
+        }
+    }
+    values
 }
 
 #[test]
-fn couplings_of_every_program_are_the_programs_own_and_are_closed_through_a_feed_through() {
-    let analysis = coupled();
+fn exported_couplings_are_those_of_the_analysis_and_close_through_a_feed_through() {
+    let analysis = analysis_with_couplings();
     let expected = expected_couplings(&analysis);
     let folder = tempfile::tempdir().unwrap();
-    if is_there("python3") {
+    if is_installed("python3") {
         std::fs::write(folder.path().join("c.py"), program("py", &analysis, "")).unwrap();
         let program = format!(
             "import c\nfor a in [{}]:\n    m, k = c.gdcm_couplings(a)\n    f = c.gdcm_closed_feedback(k, {})\n    \
              print(*[repr(x) for rows in (m, k, f) for row in rows for x in row])",
-            listed(),
-            list_of_rows(&feed_through(), ['[', ']'])
+            airspeed_list(),
+            nested_list(&feed_through(), ['[', ']'])
         );
         assert_run(
             "couplings",
@@ -436,7 +432,7 @@ fn couplings_of_every_program_are_the_programs_own_and_are_closed_through_a_feed
             &expected,
         );
     }
-    if is_there("cc") {
+    if is_installed("cc") {
         let main = format!(
             "{}\n#include <stdio.h>\nint main(void) {{ static const double s[] = {{{}}}; double d[6][4] = {};\n\
              double m[4][4], k[4][6]; unsigned n; int i, turn;\n\
@@ -445,36 +441,12 @@ fn couplings_of_every_program_are_the_programs_own_and_are_closed_through_a_feed
              for (turn = 0; turn < 2; turn++) {{ if (turn == 1 && gdcm_close_feedback(k, d)) return 2;\n\
              for (i = 0; i < 24; i++) printf(\"%.17g \", (&k[0][0])[i]); }} }}\nreturn 0; }}\n",
             program("h", &analysis, ""),
-            listed(),
-            list_of_rows(&feed_through(), ['{', '}'])
+            airspeed_list(),
+            nested_list(&feed_through(), ['{', '}'])
         );
-        std::fs::write(folder.path().join("main.c"), main).unwrap();
-        let flags = [
-            "-std=c99",
-            "-Wall",
-            "-Wextra",
-            "-Wshadow",
-            "-Werror",
-            "-pedantic",
-            "-o",
-            "main",
-            "main.c",
-            "-lm",
-        ];
-        let built = Command::new("cc")
-            .args(flags)
-            .current_dir(&folder)
-            .output()
-            .unwrap();
-        assert!(
-            built.status.success(),
-            "{}",
-            String::from_utf8_lossy(&built.stderr)
-        );
-        let program = folder.path().join("main").display().to_string();
-        assert_run("couplings", &program, &[], folder.path(), &expected);
+        assert_c_run("couplings", &main, &["-Wshadow"], &expected);
     }
-    if is_there("octave-cli") {
+    if is_installed("octave-cli") {
         std::fs::write(
             folder.path().join("my_study.m"),
             program("m", &analysis, "my_study"),
@@ -488,7 +460,7 @@ fn couplings_of_every_program_are_the_programs_own_and_are_closed_through_a_feed
             "D = [{}]; for s = [{}], [~, ~, ~, ~, m, k] = my_study(s); [~, ~, ~, ~, ~, f] = my_study(s, D); \
              printf('%.17g ', m', k', f'); end",
             rows.join("; "),
-            listed()
+            airspeed_list()
         );
         assert_run(
             "couplings",
@@ -501,7 +473,7 @@ fn couplings_of_every_program_are_the_programs_own_and_are_closed_through_a_feed
 }
 
 #[test]
-fn a_study_without_couplings_has_none_in_its_programs() {
+fn exports_without_couplings_mention_neither_mixing_nor_feedback() {
     let analysis = Engine::default()
         .analyze(
             &Study::new(embedded_example().unwrap().dataset),
@@ -519,7 +491,7 @@ fn a_study_without_couplings_has_none_in_its_programs() {
 
 /// Returns the example with altitude as second variable of the schedule, and the scheduled values
 /// at fifty airspeeds and three altitudes.
-fn with_altitude(kind: ScheduleKind) -> (Analysis, Vec<f64>) {
+fn analysis_over_altitude(kind: ScheduleKind) -> (Analysis, Vec<f64>) {
     let mut study = Study::new(embedded_example().unwrap().dataset);
     let schedule = ScheduleSettings {
         kind,
@@ -529,42 +501,34 @@ fn with_altitude(kind: ScheduleKind) -> (Analysis, Vec<f64>) {
     study.settings.schedule = schedule;
     let analysis = Engine::default().analyze(&study, &Unobserved).unwrap();
     let schedule = analysis.schedule.clone().unwrap();
-    let values = |airspeed: f64, altitude: f64| {
-        let at = schedule.evaluate(airspeed, Some(altitude));
-        [
-            at.input_gains,
-            at.output_gains,
-            at.input_delays_s,
-            at.output_delays_s,
-        ]
-        .concat()
-    };
-    let pairs = || {
-        airspeeds()
-            .into_iter()
-            .flat_map(|airspeed| ALTITUDES.map(|altitude| (airspeed, altitude)))
-    };
-    let expected = pairs()
-        .flat_map(|(airspeed, altitude)| values(airspeed, altitude))
-        .collect();
+    let mut expected = Vec::new();
+    for airspeed_kt in airspeeds() {
+        for altitude_ft in ALTITUDES_FT {
+            let at = schedule.evaluate(airspeed_kt, Some(altitude_ft));
+            expected.extend(at.input_gains);
+            expected.extend(at.output_gains);
+            expected.extend(at.input_delays_s);
+            expected.extend(at.output_delays_s);
+        }
+    }
     (analysis, expected)
 }
 
 /// Altitudes \[ft\] below, within and above the range of the example.
-const ALTITUDES: [f64; 3] = [0.0, 4321.0, 20_000.0];
+const ALTITUDES_FT: [f64; 3] = [0.0, 4321.0, 20_000.0];
 
 #[test]
 fn a_second_variable_is_the_second_argument_of_every_program() {
     for kind in [ScheduleKind::Polynomial { degree: 2 }, ScheduleKind::Table] {
-        let (analysis, expected) = with_altitude(kind);
+        let (analysis, expected) = analysis_over_altitude(kind);
         let words = format!("{kind:?} and altitude");
-        if is_there("python3") {
+        if is_installed("python3") {
             let folder = tempfile::tempdir().unwrap();
             std::fs::write(folder.path().join("c.py"), program("py", &analysis, "")).unwrap();
             let program = format!(
-                "import c\nfor a in [{}]:\n  for h in {ALTITUDES:?}:\n    mi, mo, ti, to = c.gdcm_correction(a, h)\n    \
+                "import c\nfor a in [{}]:\n  for h in {ALTITUDES_FT:?}:\n    mi, mo, ti, to = c.gdcm_correction(a, h)\n    \
                  print(*[repr(m[k][k]) for m in (mi, mo) for k in range(len(m))], *map(repr, ti + to))",
-                listed()
+                airspeed_list()
             );
             assert_run(
                 &words,
@@ -574,8 +538,7 @@ fn a_second_variable_is_the_second_argument_of_every_program() {
                 &expected,
             );
         }
-        if is_there("cc") {
-            let folder = tempfile::tempdir().unwrap();
+        if is_installed("cc") {
             let header = program("h", &analysis, "");
             let main = format!(
                 "{header}\n#include <stdio.h>\nint main(void) {{ static const double s[] = {{{}}}, h[] = {{0, 4321, 20000}};\n\
@@ -584,32 +547,9 @@ fn a_second_variable_is_the_second_argument_of_every_program() {
                  gdcm_correction(s[k], h[l], v, v + GDCM_INPUT_COUNT, v + GDCM_INPUT_COUNT + GDCM_OUTPUT_COUNT,\n\
                  v + 2 * GDCM_INPUT_COUNT + GDCM_OUTPUT_COUNT);\n\
                  for (j = 0; j < sizeof v / sizeof *v; j++) printf(\"%.17g \", v[j]); }}\nreturn 0; }}\n",
-                listed()
+                airspeed_list()
             );
-            std::fs::write(folder.path().join("main.c"), main).unwrap();
-            let flags = [
-                "-std=c99",
-                "-Wall",
-                "-Wextra",
-                "-Werror",
-                "-pedantic",
-                "-o",
-                "main",
-                "main.c",
-                "-lm",
-            ];
-            let built = Command::new("cc")
-                .args(flags)
-                .current_dir(&folder)
-                .output()
-                .unwrap();
-            assert!(
-                built.status.success(),
-                "{words}: {}",
-                String::from_utf8_lossy(&built.stderr)
-            );
-            let program = folder.path().join("main").display().to_string();
-            assert_run(&words, &program, &[], folder.path(), &expected);
+            assert_c_run(&words, &main, &[], &expected);
         }
         let function = program("m", &analysis, "my_study");
         assert!(
@@ -621,7 +561,7 @@ fn a_second_variable_is_the_second_argument_of_every_program() {
 
 /// Returns an analysis with one input and two outputs of the example, with names that need
 /// escaping.
-fn with_nasty_names() -> Analysis {
+fn analysis_with_nasty_names() -> Analysis {
     let example = embedded_example().unwrap().dataset;
     let mut header = example.header();
     header.inputs[0].name = NASTY[0].to_owned();
@@ -637,17 +577,17 @@ fn with_nasty_names() -> Analysis {
 }
 
 #[test]
-fn names_come_back_byte_by_byte() {
-    let analysis = with_nasty_names();
+fn exported_channel_names_are_unchanged_byte_by_byte() {
+    let analysis = analysis_with_nasty_names();
     let folder = tempfile::tempdir().unwrap();
     let expected: Vec<f64> = NASTY.concat().bytes().map(f64::from).collect();
-    if is_there("python3") {
+    if is_installed("python3") {
         std::fs::write(folder.path().join("c.py"), program("py", &analysis, "")).unwrap();
         let lists =
             "import c\nfor name in c.INPUTS[:1] + c.OUTPUTS[:2]:\n    print(*list(name.encode()))";
         assert_run("names", "python3", &["-c", lists], folder.path(), &expected);
     }
-    if is_there("cc") {
+    if is_installed("cc") {
         let main = format!(
             "{}\n#include <stdio.h>\nint main(void) {{\n\
              const char *n[] = {{GDCM_INPUT_NAME_0, GDCM_OUTPUT_NAME_0, GDCM_OUTPUT_NAME_1}};\n\
@@ -656,44 +596,25 @@ fn names_come_back_byte_by_byte() {
              return 0; }}\n",
             program("h", &analysis, "")
         );
-        std::fs::write(folder.path().join("main.c"), main).unwrap();
-        let flags = [
-            "-std=c99",
-            "-Wall",
-            "-Wextra",
-            "-Werror",
-            "-pedantic",
-            "-o",
-            "main",
-            "main.c",
-            "-lm",
-        ];
-        let built = Command::new("cc")
-            .args(flags)
-            .current_dir(&folder)
-            .output()
-            .unwrap();
-        assert!(
-            built.status.success(),
-            "{}",
-            String::from_utf8_lossy(&built.stderr)
-        );
-        let program = folder.path().join("main").display().to_string();
-        assert_run("names", &program, &[], folder.path(), &expected);
+        assert_c_run("names", &main, &[], &expected);
     }
 }
 
 #[test]
-fn every_line_of_a_function_of_matlab_that_is_no_code_is_a_comment() {
-    let text = program("m", &with_nasty_names(), "k2_v");
+fn an_exported_matlab_function_contains_only_code_and_comments() {
+    let text = program("m", &analysis_with_nasty_names(), "k2_v");
     assert!(
         text.is_ascii() && text.starts_with("function [Mi, Mo, tau_i, tau_o] = k2_v("),
         "{text}"
     );
-    let code = ["function ", "  ", "end", "%"];
+    let line_starts = ["function ", "  ", "end", "%"];
     for line in text.lines().filter(|line| !line.is_empty()) {
-        assert!(code.iter().any(|start| line.starts_with(start)), "{line}");
-        assert!(!matches!(line.trim(), "%{" | "%}"));
+        let is_expected = line_starts.iter().any(|start| line.starts_with(start));
+        assert!(is_expected, "neither code nor a comment: {line}");
+        assert!(
+            !matches!(line.trim(), "%{" | "%}"),
+            "a block comment: {line}"
+        );
     }
     assert_eq!(
         text.lines()
@@ -704,7 +625,7 @@ fn every_line_of_a_function_of_matlab_that_is_no_code_is_a_comment() {
 }
 
 #[test]
-fn a_name_that_matlab_cannot_call_is_refused() {
+fn a_file_name_that_is_not_a_matlab_function_name_is_refused() {
     for name in [
         "2nd",
         "my-study",
@@ -727,7 +648,7 @@ fn a_name_that_matlab_cannot_call_is_refused() {
 }
 
 #[test]
-fn a_comment_stays_on_its_line_and_is_not_ended() {
+fn comments_are_ascii_on_one_line_and_contain_no_end_mark() {
     assert_eq!(comment("a\n*/b"), "a<U+000A>* /b");
     assert_eq!(comment("δ\\"), "<U+03B4>\\.");
     assert_eq!(comment("−3 ± 2 dB"), "-3 +- 2 dB");
@@ -735,7 +656,7 @@ fn a_comment_stays_on_its_line_and_is_not_ended() {
 
 proptest! {
     #[test]
-    fn no_comment_is_ended(text in "[*/\\\\?%{}\"'a\\n]{0,20}") {
+    fn no_text_ends_its_comment(text in "[*/\\\\?%{}\"'a\\n]{0,20}") {
         let plain = comment(&text);
         for mark in ["*/", "/*", "//", "??", "%{", "%}", "\n", "\"\"", "'''"] {
             prop_assert!(!plain.contains(mark), "{}", plain);
@@ -743,7 +664,7 @@ proptest! {
     }
 
     #[test]
-    fn a_number_comes_back_to_the_last_digit(value in proptest::num::f64::NORMAL | proptest::num::f64::SUBNORMAL) {
+    fn a_number_is_parsed_back_exactly(value in proptest::num::f64::NORMAL | proptest::num::f64::SUBNORMAL) {
         prop_assert_eq!(number(value).parse::<f64>().unwrap(), value);
     }
 }

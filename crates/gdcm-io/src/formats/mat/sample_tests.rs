@@ -1,6 +1,33 @@
 //! Builders of MATLAB file bytes for tests.
+//!
+//! The numbers of types and classes are those of "MAT-File Format" (The MathWorks, level 5), except
+//! that of opaque arrays, which is not documented there, like the layout of objects.
 
-/// Returns a data element with the type number `kind`.
+/// Types of data elements (miINT8 and so on).
+mod data_type {
+    pub(super) const INT8: u32 = 1;
+    pub(super) const UINT8: u32 = 2;
+    pub(super) const INT32: u32 = 5;
+    pub(super) const UINT32: u32 = 6;
+    pub(super) const DOUBLE: u32 = 9;
+    pub(super) const UINT64: u32 = 13;
+    pub(super) const MATRIX: u32 = 14;
+    pub(super) const UTF8: u32 = 16;
+}
+
+/// Classes of arrays (mxCELL_CLASS and so on).
+mod array_class {
+    pub(super) const CELL: u32 = 1;
+    pub(super) const STRUCT: u32 = 2;
+    pub(super) const CHAR: u32 = 4;
+    pub(super) const DOUBLE: u32 = 6;
+    pub(super) const UINT8: u32 = 9;
+    pub(super) const UINT32: u32 = 13;
+    pub(super) const UINT64: u32 = 15;
+    pub(super) const OPAQUE: u32 = 17;
+}
+
+/// Returns a data element with the type number `kind`, padded to a multiple of eight bytes.
 pub(super) fn element(kind: u32, data: &[u8]) -> Vec<u8> {
     let mut bytes = [kind.to_le_bytes(), (data.len() as u32).to_le_bytes()].concat();
     bytes.extend(data);
@@ -10,16 +37,19 @@ pub(super) fn element(kind: u32, data: &[u8]) -> Vec<u8> {
 
 /// Returns an array; `class` includes the flags.
 pub(super) fn matrix(class: u32, shape: &[i32], name: &str, contents: &[Vec<u8>]) -> Vec<u8> {
-    let flags = element(6, &[class.to_le_bytes(), [0; 4]].concat());
+    let flags = element(data_type::UINT32, &[class.to_le_bytes(), [0; 4]].concat());
     let shape = element(
-        5,
+        data_type::INT32,
         &shape
             .iter()
             .flat_map(|side| side.to_le_bytes())
             .collect::<Vec<_>>(),
     );
-    let name = element(1, name.as_bytes());
-    element(14, &[&[flags, shape, name][..], contents].concat().concat())
+    let name = element(data_type::INT8, name.as_bytes());
+    element(
+        data_type::MATRIX,
+        &[&[flags, shape, name][..], contents].concat().concat(),
+    )
 }
 
 /// Returns an array of `double`.
@@ -28,48 +58,61 @@ pub(super) fn doubles(name: &str, shape: &[i32], numbers: &[f64]) -> Vec<u8> {
         .iter()
         .flat_map(|number| number.to_le_bytes())
         .collect();
-    matrix(6, shape, name, &[element(9, &data)])
+    matrix(
+        array_class::DOUBLE,
+        shape,
+        name,
+        &[element(data_type::DOUBLE, &data)],
+    )
 }
 
 /// Returns a character array with a single row.
 pub(super) fn chars(name: &str, text: &str) -> Vec<u8> {
     matrix(
-        4,
+        array_class::CHAR,
         &[1, text.len() as i32],
         name,
-        &[element(16, text.as_bytes())],
+        &[element(data_type::UTF8, text.as_bytes())],
     )
 }
 
 /// Returns a struct with one record.
 pub(super) fn record(name: &str, fields: &[(&str, Vec<u8>)]) -> Vec<u8> {
-    let names = fields.iter().flat_map(|(field, _)| {
-        let mut bytes = field.as_bytes().to_vec();
-        bytes.resize(32, 0);
-        bytes
-    });
-    let values = fields.iter().flat_map(|(_, value)| value.clone());
+    // Every field name takes the same number of bytes.
+    const NAME_LENGTH: usize = 32;
+    let mut names: Vec<u8> = Vec::new();
+    let mut values: Vec<u8> = Vec::new();
+    for (number, (field, value)) in fields.iter().enumerate() {
+        names.extend(field.as_bytes());
+        names.resize((number + 1) * NAME_LENGTH, 0);
+        values.extend(value);
+    }
     let contents = [
-        element(5, &32_i32.to_le_bytes()),
-        element(1, &names.collect::<Vec<_>>()),
-        values.collect(),
+        element(data_type::INT32, &(NAME_LENGTH as i32).to_le_bytes()),
+        element(data_type::INT8, &names),
+        values,
     ];
-    matrix(2, &[1, 1], name, &contents)
+    matrix(array_class::STRUCT, &[1, 1], name, &contents)
 }
 
 /// Returns a column cell array.
 pub(super) fn column(values: &[Vec<u8>]) -> Vec<u8> {
-    matrix(1, &[values.len() as i32, 1], "", values)
+    matrix(array_class::CELL, &[values.len() as i32, 1], "", values)
 }
 
-/// Returns an opaque array.
+/// Returns an opaque array: an object of `class` in MATLAB's class system MCOS.
 pub(super) fn opaque(name: &str, class: &str, contents: Vec<u8>) -> Vec<u8> {
-    let flags = element(6, &[17_u32.to_le_bytes(), [0; 4]].concat());
-    let texts = [name, "MCOS", class].map(|text| element(1, text.as_bytes()));
-    element(14, &[flags, texts.concat(), contents].concat())
+    let flags = [array_class::OPAQUE.to_le_bytes(), [0; 4]].concat();
+    let flags = element(data_type::UINT32, &flags);
+    let texts = [name, "MCOS", class].map(|text| element(data_type::INT8, text.as_bytes()));
+    element(
+        data_type::MATRIX,
+        &[flags, texts.concat(), contents].concat(),
+    )
 }
 
-/// Returns a reference to objects.
+/// Returns a reference to objects of a class: a mark, the number of dimensions, the shape, the
+/// numbers of the objects, and the number of the class.
 pub(super) fn reference(objects: &[u32], class: u32) -> Vec<u8> {
     let words = [
         &[0xdd00_0000, 2, 1, objects.len() as u32][..],
@@ -83,13 +126,15 @@ pub(super) fn reference(objects: &[u32], class: u32) -> Vec<u8> {
 /// Returns a column of 32-bit integers.
 pub(super) fn words_of(words: &[u32]) -> Vec<u8> {
     let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
-    matrix(13, &[words.len() as i32, 1], "", &[element(6, &bytes)])
+    let data = element(data_type::UINT32, &bytes);
+    matrix(array_class::UINT32, &[words.len() as i32, 1], "", &[data])
 }
 
 /// Returns a row of 64-bit integers.
 pub(super) fn long_words_of(words: &[u64]) -> Vec<u8> {
     let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
-    matrix(15, &[1, words.len() as i32], "", &[element(13, &bytes)])
+    let data = element(data_type::UINT64, &bytes);
+    matrix(array_class::UINT64, &[1, words.len() as i32], "", &[data])
 }
 
 /// Returns a file with these elements and no objects.
@@ -100,23 +145,24 @@ pub(super) fn file(elements: &[u8]) -> Vec<u8> {
 /// Returns a file with these elements and, if given, the cells of its objects.
 pub(super) fn file_with_objects(elements: &[u8], cells: Option<&[Vec<u8>]>) -> Vec<u8> {
     let mut bytes = b"MATLAB 5.0 MAT-file, by hand".to_vec();
+    // The heading: 116 bytes of text, the offset of the objects, the version, the byte order.
     bytes.resize(116, b' ');
-    let at = if cells.is_some() {
+    let objects_at = if cells.is_some() {
         128 + elements.len() as u64
     } else {
         0
     };
-    bytes.extend(at.to_le_bytes());
+    bytes.extend(objects_at.to_le_bytes());
     bytes.extend(b"\0\x01IM");
     bytes.extend(elements);
     if let Some(cells) = cells {
         let wrapper = record("", &[("MCOS", opaque("", "FileWrapper__", column(cells)))]);
         let inner = [b"\0\x01IM\0\0\0\0".to_vec(), wrapper].concat();
         bytes.extend(matrix(
-            9,
+            array_class::UINT8,
             &[1, inner.len() as i32],
             "",
-            &[element(2, &inner)],
+            &[element(data_type::UINT8, &inner)],
         ));
     }
     bytes
@@ -130,16 +176,22 @@ pub(super) fn big_file(name: &str, shape: &[i32], numbers: &[f64]) -> Vec<u8> {
         bytes.resize(bytes.len().next_multiple_of(8), 0);
         bytes
     };
+    // The compact form of an element with up to four bytes: length and type share a word.
     let small = |text: &str| {
-        let mut bytes = ((text.len() as u32) << 16 | 1).to_be_bytes().to_vec();
+        let mut bytes = ((text.len() as u32) << 16 | data_type::INT8)
+            .to_be_bytes()
+            .to_vec();
         bytes.extend(text.as_bytes());
         bytes.resize(8, 0);
         bytes
     };
     let contents = [
-        element(6, &[6_u32.to_be_bytes(), [0; 4]].concat()),
         element(
-            5,
+            data_type::UINT32,
+            &[array_class::DOUBLE.to_be_bytes(), [0; 4]].concat(),
+        ),
+        element(
+            data_type::INT32,
             &shape
                 .iter()
                 .flat_map(|side| side.to_be_bytes())
@@ -147,7 +199,7 @@ pub(super) fn big_file(name: &str, shape: &[i32], numbers: &[f64]) -> Vec<u8> {
         ),
         small(name),
         element(
-            9,
+            data_type::DOUBLE,
             &numbers
                 .iter()
                 .flat_map(|number| number.to_be_bytes())
@@ -156,7 +208,7 @@ pub(super) fn big_file(name: &str, shape: &[i32], numbers: &[f64]) -> Vec<u8> {
     ];
     let mut bytes = vec![b' '; 124];
     bytes.extend(b"\x01\0MI");
-    bytes.extend(element(14, &contents.concat()));
+    bytes.extend(element(data_type::MATRIX, &contents.concat()));
     bytes
 }
 
@@ -181,7 +233,8 @@ impl Directory<'_> {
     /// Returns the directory as the first cell of the object part.
     pub(super) fn cell(&self) -> Vec<u8> {
         let bytes = self.bytes();
-        matrix(9, &[bytes.len() as i32, 1], "", &[element(2, &bytes)])
+        let data = element(data_type::UINT8, &bytes);
+        matrix(array_class::UINT8, &[bytes.len() as i32, 1], "", &[data])
     }
 
     fn bytes(&self) -> Vec<u8> {
@@ -191,36 +244,26 @@ impl Directory<'_> {
             .flat_map(|name| [name.as_bytes(), b"\0"].concat())
             .collect();
         names.resize(names.len().next_multiple_of(8), 0);
-        let lists = |lists: &[&[[u32; 3]]]| {
-            let list = |list: &&[[u32; 3]]| {
-                let mut words = [&[list.len() as u32][..], list.as_flattened()].concat();
-                words.resize(words.len().next_multiple_of(2), 0);
-                words
-            };
-            [0, 0]
-                .into_iter()
-                .chain(lists.iter().flat_map(list))
-                .collect::<Vec<u32>>()
-        };
-        let classes: Vec<u32> = [[0; 2]]
-            .iter()
-            .chain(self.classes)
-            .flat_map(|&[package, name]| [package, name, 0, 0])
-            .collect();
-        let objects: Vec<u32> = [[0; 3]]
-            .iter()
-            .chain(self.objects)
-            .flat_map(|&[class, made, plain]| [class, 0, 0, made, plain, 0])
-            .collect();
+        // Indices count from 1: each region begins with an empty entry.
+        let mut classes: Vec<u32> = vec![0; 4];
+        for &[package, name] in self.classes {
+            classes.extend([package, name, 0, 0]);
+        }
+        let mut objects: Vec<u32> = vec![0; 6];
+        for &[class, made, plain] in self.objects {
+            objects.extend([class, 0, 0, made, plain, 0]);
+        }
         let regions = [
             classes,
-            lists(self.made),
+            property_lists(self.made),
             objects,
-            lists(self.plain),
+            property_lists(self.plain),
             vec![0, 0],
             vec![],
             vec![0, 0],
         ];
+        // The head has ten words of four bytes: version, number of names, the offsets of the seven
+        // regions and of their end.
         let mut at = 40 + names.len() as u32;
         let mut head = vec![self.version, self.names.len() as u32];
         for region in &regions {
@@ -228,12 +271,27 @@ impl Directory<'_> {
             at += 4 * region.len() as u32;
         }
         head.push(at);
-        let words = |words: Vec<u32>| {
-            words
-                .into_iter()
-                .flat_map(u32::to_le_bytes)
-                .collect::<Vec<u8>>()
-        };
-        [words(head), names, words(regions.concat())].concat()
+        [
+            little_endian(&head),
+            names,
+            little_endian(&regions.concat()),
+        ]
+        .concat()
     }
+}
+
+/// Returns the region of property lists: an empty entry, then each list with its length in front,
+/// padded to a multiple of two words.
+fn property_lists(lists: &[&[[u32; 3]]]) -> Vec<u32> {
+    let mut words: Vec<u32> = vec![0; 2];
+    for list in lists {
+        words.push(list.len() as u32);
+        words.extend(list.as_flattened());
+        words.resize(words.len().next_multiple_of(2), 0);
+    }
+    words
+}
+
+fn little_endian(words: &[u32]) -> Vec<u8> {
+    words.iter().flat_map(|word| word.to_le_bytes()).collect()
 }

@@ -15,6 +15,7 @@ use crate::reading_budget::MOST_MEMORY;
 
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/records/");
 
+/// Reads the records in a test file.
 fn read(name: &str) -> FoundRecords {
     records_of_bytes(
         &std::fs::read(format!("{FOLDER}{name}")).unwrap(),
@@ -24,6 +25,7 @@ fn read(name: &str) -> FoundRecords {
     .unwrap()
 }
 
+/// Returns the channels of the records that `tests/data/make_files.py` writes.
 fn channels() -> RecordChannels {
     let rule = |name: &str, unit: &str, in_files: &str| ChannelRule {
         unit: unit.to_owned(),
@@ -42,8 +44,11 @@ fn channels() -> RecordChannels {
 fn flight(table: &RecordTable) -> gdcm_model::simulation::FlightRecord {
     let mut channels = channels();
     let rules = channels.inputs.iter_mut().chain(&mut channels.outputs);
-    for (index, rule) in rules.enumerate().filter(|_| !table.named) {
-        rule.aliases.push(format!("#{}", index + 2));
+    if !table.named {
+        // The first column is the time.
+        for (index, rule) in rules.enumerate() {
+            rule.aliases.push(format!("#{}", index + 2));
+        }
     }
     if table.find("az").is_some() {
         channels.outputs[1].aliases.push("az".to_owned());
@@ -53,7 +58,8 @@ fn flight(table: &RecordTable) -> gdcm_model::simulation::FlightRecord {
     proposal.layout.flight_record(table, &channels).unwrap()
 }
 
-/// Asserts that a record has the data written by `make_files.py`, within `digits` decimals.
+/// Asserts that a record has the data written by `tests/data/make_files.py`, within `digits`
+/// decimals. A sample of P may be missing.
 fn assert_record(table: &RecordTable, digits: i32) {
     let record = flight(table);
     let samples = record.time_s.len();
@@ -61,7 +67,7 @@ fn assert_record(table: &RecordTable, digits: i32) {
         // Half a unit of the last decimal, and the rounding error of a division.
         assert!(
             (value - expected).abs() < 0.5 * 10_f64.powi(-digits) + 1e-12,
-            "{}: {value} {expected}",
+            "{}: {value} instead of {expected}",
             table.name
         );
     };
@@ -78,7 +84,7 @@ fn assert_record(table: &RecordTable, digits: i32) {
 }
 
 #[test]
-fn one_record_in_every_format_is_the_same_record() {
+fn every_format_yields_the_same_record() {
     for name in [
         "units.csv",
         "comma.csv",
@@ -93,50 +99,45 @@ fn one_record_in_every_format_is_the_same_record() {
         "columns.json",
     ] {
         let found = read(name);
-        assert_eq!(
-            (found.tables.len(), &found.faults),
-            (1, &Vec::new()),
-            "{name}: {:?}",
-            found.ignored
-        );
-        assert_eq!(found.tables[0].rows(), 60, "{name}");
-        assert_eq!(
-            (
-                found.tables[0].source.file.as_str(),
-                found.tables[0].source.sha256.len()
-            ),
-            (name, 64)
-        );
-        assert_record(&found.tables[0], 3);
+        assert!(found.faults.is_empty(), "{name}: {:?}", found.faults);
+        assert_eq!(found.tables.len(), 1, "{name}: {:?}", found.ignored);
+        let table = &found.tables[0];
+        assert_eq!(table.rows(), 60, "{name}");
+        assert_eq!(table.source.file, name);
+        assert_eq!(table.source.sha256.len(), 64, "{name}");
+        assert_record(table, 3);
     }
 }
 
+/// Returns name, unit and side of each column of the first record in a test file.
+fn column_labels(name: &str) -> Vec<(String, String, Option<ChannelSide>)> {
+    let mut labels = Vec::new();
+    for column in &read(name).tables[0].columns {
+        let unit = column.unit.clone().unwrap_or_default();
+        labels.push((column.name.clone(), unit, column.side));
+    }
+    labels
+}
+
 #[test]
-fn names_units_and_sides_are_those_of_the_file() {
-    let of = |name: &str| {
-        let found = read(name);
-        let columns = found.tables[0].columns.iter();
-        columns
-            .map(|column| {
-                (
-                    column.name.clone(),
-                    column.unit.clone().unwrap_or_default(),
-                    column.side,
-                )
-            })
-            .collect::<Vec<_>>()
-    };
+fn column_names_units_and_sides_are_read_from_the_file() {
     let input = Some(ChannelSide::Input);
     let output = Some(ChannelSide::Output);
     let column = |name: &str, unit: &str, side| (name.to_owned(), unit.to_owned(), side);
     assert_eq!(
-        of("units.csv")[..2],
+        column_labels("units.csv")[..2],
         [column("time", "s", None), column("LON", "%", None)]
     );
-    assert_eq!(of("comma.csv")[3], column("roll rate", "rad/s", None));
-    assert_eq!(of("strokes.txt")[1], column("elev,yoke1", "", None));
     assert_eq!(
-        of("sides.mat")[..2],
+        column_labels("comma.csv")[3],
+        column("roll rate", "rad/s", None)
+    );
+    assert_eq!(
+        column_labels("strokes.txt")[1],
+        column("elev,yoke1", "", None)
+    );
+    assert_eq!(
+        column_labels("sides.mat")[..2],
         [column("t", "", None), column("inr_1", "", input)]
     );
     let labelled = [
@@ -145,7 +146,7 @@ fn names_units_and_sides_are_those_of_the_file() {
         column("P", "rad/s", output),
         column("NZ", "g", output),
     ];
-    assert_eq!(of("struct.mat"), labelled);
+    assert_eq!(column_labels("struct.mat"), labelled);
     assert_eq!(read("struct.mat").tables[0].sample_time_s, Some(0.02));
     assert_eq!(read("struct.mat").tables[0].name, "struct, rec");
     assert!(!read("matrix.npy").tables[0].named);
@@ -170,16 +171,15 @@ fn several_records_in_a_file_are_distinguished() {
         .collect();
     assert_eq!(names, ["experiments, data, up", "experiments, data, down"]);
     assert_eq!(experiments.tables[1].rows(), 40);
-    let all = runs
-        .tables
-        .iter()
-        .chain(&restart.tables)
-        .chain(&experiments.tables);
-    all.for_each(|table| assert_record(table, 3));
+    for found in [runs, restart, experiments] {
+        for table in &found.tables {
+            assert_record(table, 3);
+        }
+    }
 }
 
 #[test]
-fn files_in_an_archive_are_records_of_it() {
+fn each_readable_file_in_an_archive_is_a_record() {
     let found = read("two.zip");
     let sources: Vec<(&str, Option<&str>)> = found
         .tables
@@ -198,10 +198,9 @@ fn files_in_an_archive_are_records_of_it() {
         "{:?}",
         found.ignored
     );
-    found
-        .tables
-        .iter()
-        .for_each(|table| assert_record(table, 3));
+    for table in &found.tables {
+        assert_record(table, 3);
+    }
 }
 
 #[test]
@@ -230,27 +229,30 @@ fn records_are_found_again_by_their_names_in_the_dataset() {
     );
 }
 
+/// Returns a line of a log with the data of [`assert_record`]: sample `k`, every 20 ms.
+fn log_row(k: usize, manoeuvre: &str) -> String {
+    let at = k as f64;
+    let hundredths = 2 * k;
+    let clock = format!(
+        "2026-03-01 12:30:{:02}.{:02}",
+        hundredths / 100,
+        hundredths % 100
+    );
+    let lon = 50.0 + 10.0 * (0.3 * at).sin();
+    let lat = 45.0 + 8.0 * (0.2 * at).cos();
+    let p = 0.3 * (0.25 * at).sin();
+    let nz = 1.0 + 0.2 * (0.35 * at).cos();
+    format!("{clock},{manoeuvre},{lon:.4},{lat:.4},{p:.4},{nz:.4}\n")
+}
+
 #[test]
-fn words_and_clock_times_among_the_numbers_of_a_log_are_read() {
-    let row = |k: usize, run: &str| {
-        let at = k as f64;
-        let cs = 2 * k;
-        let stick = (
-            50.0 + 10.0 * (0.3 * at).sin(),
-            45.0 + 8.0 * (0.2 * at).cos(),
-        );
-        let aircraft = (0.3 * (0.25 * at).sin(), 1.0 + 0.2 * (0.35 * at).cos());
-        let clock = format!("2026-03-01 12:30:{:02}.{:02}", cs / 100, cs % 100);
-        format!(
-            "{clock},{run},{:.4},{:.4},{:.4},{:.4}\n",
-            stick.0, stick.1, aircraft.0, aircraft.1
-        )
-    };
-    let head = "time,manoeuvre,LON,LAT,P,NZ\n".to_owned();
-    let log = (0..60)
-        .map(|k| row(k, "LON sweep"))
-        .chain((0..60).map(|k| row(k, "LAT sweep")))
-        .fold(head, |log, row| log + &row);
+fn words_and_clock_times_in_a_log_are_replaced_by_numbers() {
+    let mut log = "time,manoeuvre,LON,LAT,P,NZ\n".to_owned();
+    for manoeuvre in ["LON sweep", "LAT sweep"] {
+        for k in 0..60 {
+            log.push_str(&log_row(k, manoeuvre));
+        }
+    }
     let found = records_of_bytes(log.as_bytes(), "log.csv", &ReadingBudget::new(1 << 24)).unwrap();
     let names: Vec<&str> = found
         .tables
@@ -264,39 +266,40 @@ fn words_and_clock_times_among_the_numbers_of_a_log_are_read() {
     }
     .to_string();
     assert!(found.tables[1].notes.contains(&numbered), "{found:?}");
-    found
-        .tables
-        .iter()
-        .for_each(|table| assert_record(table, 3));
+    for table in &found.tables {
+        assert_record(table, 3);
+    }
+}
+
+/// Returns a table with its heading and rising numbers, separated by strokes.
+fn log_table(heading: &str, rows: usize) -> String {
+    let columns = heading.split('|').count();
+    let mut text = format!("{heading} |\n");
+    for row in 0..rows {
+        for column in 0..columns {
+            text.push_str(&format!(" {} |", (row * (column + 1)) as f64 * 0.02));
+        }
+        text.push('\n');
+    }
+    text
 }
 
 #[test]
-fn a_log_that_is_begun_anew_with_other_columns_is_two_tables() {
-    let log = |columns: &str, rows: usize| {
-        let cells = columns.split('|').count();
-        let row = |k: usize| {
-            (0..cells)
-                .map(|cell| format!(" {} |", (k * (cell + 1)) as f64 * 0.02))
-                .collect::<String>()
-                + "\n"
-        };
-        format!("{columns} |\n") + &(0..rows).map(row).collect::<String>()
-    };
-    let text = log("time,s | P,rad/s", 3) + "\n" + &log("time,s | P,rad/s | Q,rad/s", 50);
+fn each_long_enough_table_of_a_restarted_log_is_a_record() {
+    let text =
+        log_table("time,s | P,rad/s", 3) + "\n" + &log_table("time,s | P,rad/s | Q,rad/s", 50);
     let found = records_of_bytes(text.as_bytes(), "log.txt", &ReadingBudget::new(1 << 24)).unwrap();
-    assert_eq!(
-        (
-            found.tables.len(),
-            found.tables[0].rows(),
-            found.tables[0].columns.len()
-        ),
-        (1, 50, 3)
-    );
+    // Three rows are too few for a record.
+    let [table] = found.tables.as_slice() else {
+        panic!("one record: {found:?}")
+    };
+    assert_eq!((table.rows(), table.columns.len()), (50, 3));
     let one_of_tables = ReadingNote::OneOfTables { count: 2, line: 6 };
-    assert_eq!(found.tables[0].notes[0], one_of_tables.to_string());
-    assert_eq!(found.tables[0].source.variable.as_deref(), Some("table 2"));
+    assert_eq!(table.notes[0], one_of_tables.to_string());
+    assert_eq!(table.source.variable.as_deref(), Some("table 2"));
 }
 
+/// Returns a matrix; `value` maps the index, which counts column by column, to an entry.
 fn numbers(rows: usize, columns: usize, value: impl Fn(usize) -> f64) -> Value {
     Value::Array(Array::matrix(
         rows,
@@ -305,6 +308,7 @@ fn numbers(rows: usize, columns: usize, value: impl Fn(usize) -> f64) -> Value {
     ))
 }
 
+/// Returns a cell array of texts.
 fn texts(texts: &[&str]) -> Value {
     let text = |text: &&str| {
         Value::Text(TextArray {
@@ -318,7 +322,8 @@ fn texts(texts: &[&str]) -> Value {
     })
 }
 
-fn record(fields: Vec<(&str, Value)>) -> StructArray {
+/// Returns a struct with a single element.
+fn struct_of(fields: Vec<(&str, Value)>) -> StructArray {
     let fields = fields
         .into_iter()
         .map(|(name, value)| (name.to_owned(), vec![value]))
@@ -332,11 +337,12 @@ fn record(fields: Vec<(&str, Value)>) -> StructArray {
 fn object(class: &str, fields: Vec<(&str, Value)>) -> Value {
     Value::Object(Object {
         class: class.to_owned(),
-        records: record(fields),
+        records: struct_of(fields),
     })
 }
 
-fn searched(name: &str, value: Value) -> Found<Columns> {
+/// Searches a variable for records.
+fn search(name: &str, value: Value) -> Found<Columns> {
     search_records(
         &[Variable {
             name: name.to_owned(),
@@ -356,7 +362,7 @@ fn timetable(row_times: Value) -> Value {
             numbers(60, 2, |k| -(k as f64)),
         ],
     };
-    let any = record(vec![
+    let any = struct_of(vec![
         ("data", Value::Cell(data)),
         ("varNames", texts(&["LON", "rates"])),
         ("varUnits", texts(&["%", "deg/s"])),
@@ -367,19 +373,13 @@ fn timetable(row_times: Value) -> Value {
 }
 
 #[test]
-fn timetables_have_their_row_times() {
+fn a_timetable_has_the_times_or_the_sample_time_of_its_rows() {
     let duration = |rows: usize, ms: fn(usize) -> f64| {
         object("duration", vec![("millis", numbers(rows, 1, ms))])
     };
-    let columns = |row_times: Value| {
-        searched("tt", timetable(row_times))
-            .items
-            .into_iter()
-            .next()
-            .unwrap()
-    };
-    let of = columns(duration(60, |k| 20.0 * k as f64));
-    let names: Vec<&str> = of
+    let columns = |row_times: Value| search("tt", timetable(row_times)).items.remove(0);
+    let with_durations = columns(duration(60, |k| 20.0 * k as f64));
+    let names: Vec<&str> = with_durations
         .columns
         .iter()
         .map(|column| column.name.as_str())
@@ -387,9 +387,9 @@ fn timetables_have_their_row_times() {
     assert_eq!(names, ["Time", "LON", "rates_1", "rates_2"]);
     assert_eq!(
         (
-            of.columns[0].values[3],
-            of.columns[3].values[0],
-            of.columns[2].unit.as_deref()
+            with_durations.columns[0].values[3],
+            with_durations.columns[3].values[0],
+            with_durations.columns[2].unit.as_deref()
         ),
         (0.06, -60.0, Some("deg/s"))
     );
@@ -398,8 +398,9 @@ fn timetables_have_their_row_times() {
         vec![("data", numbers(60, 1, |k| 1.7e12 + 20.0 * k as f64))],
     );
     assert_eq!(columns(clock).columns[0].values[3], 0.06);
+    // Regular times are given by a rate of 50 Hz or, otherwise, by a step of 10 ms.
     let regular = |by_rate: f64| {
-        Value::Struct(record(vec![
+        Value::Struct(struct_of(vec![
             ("origin", duration(1, |_| 0.0)),
             ("specifiedAsRate", numbers(1, 1, move |_| by_rate)),
             ("stepSize", duration(1, |_| 10.0)),
@@ -416,7 +417,7 @@ fn timetables_have_their_row_times() {
 }
 
 #[test]
-fn identification_data_of_matlab_and_of_octave_are_read() {
+fn iddata_objects_of_matlab_and_octave_are_read() {
     let matlab = object(
         "iddata",
         vec![
@@ -427,15 +428,15 @@ fn identification_data_of_matlab_and_of_octave_are_read() {
             ("OutputUnit_", texts(&["rad/s", ""])),
         ],
     );
-    let of = searched("z", matlab).items.into_iter().next().unwrap();
-    let columns: Vec<(&str, Option<&str>)> = of
+    let iddata = search("z", matlab).items.remove(0);
+    let columns: Vec<(&str, Option<&str>)> = iddata
         .columns
         .iter()
         .map(|column| (column.name.as_str(), column.unit.as_deref()))
         .collect();
     assert_eq!(columns, [("u1", None), ("P", Some("rad/s")), ("Q", None)]);
     assert_eq!(
-        (of.sample_time_s, of.columns[1].side),
+        (iddata.sample_time_s, iddata.columns[1].side),
         (Some(0.01), Some(ChannelSide::Output))
     );
     let octave = object(
@@ -446,13 +447,13 @@ fn identification_data_of_matlab_and_of_octave_are_read() {
             ("tsam", numbers(1, 1, |_| 0.05)),
         ],
     );
-    assert_eq!(searched("z", octave).items[0].sample_time_s, Some(0.05));
+    assert_eq!(search("z", octave).items[0].sample_time_s, Some(0.05));
     let without_outputs = object(
         "iddata",
         vec![("y", texts(&["lost"])), ("u", numbers(60, 1, |k| k as f64))],
     );
     assert_eq!(
-        searched("z", without_outputs).faults,
+        search("z", without_outputs).faults,
         [FoundFault::new("z", RecognitionFault::NoOutputData)]
     );
     let over_frequency = object(
@@ -463,7 +464,7 @@ fn identification_data_of_matlab_and_of_octave_are_read() {
         ],
     );
     assert_eq!(
-        searched("z", over_frequency).faults,
+        search("z", over_frequency).faults,
         [FoundFault::new("z", RecognitionFault::FrequencyDomain)]
     );
 }
@@ -479,32 +480,33 @@ fn a_simulink_structure_with_time_is_a_record() {
     };
     let first = signal("LON [%]", 1);
     let second = signal("rates", 2);
-    let fields = ["values", "label"].into_iter().enumerate();
-    let fields = fields
+    let fields = ["values", "label"]
+        .into_iter()
+        .enumerate()
         .map(|(at, name)| (name.to_owned(), vec![first[at].clone(), second[at].clone()]))
         .collect();
     let signals = Value::Struct(StructArray {
         shape: vec![1, 2],
         fields,
     });
-    let logged = Value::Struct(record(vec![
+    let logged = Value::Struct(struct_of(vec![
         ("time", numbers(60, 1, |k| 0.02 * k as f64)),
         ("signals", signals),
     ]));
-    let of = searched("out", logged).items.into_iter().next().unwrap();
-    let names: Vec<&str> = of
+    let simulink = search("out", logged).items.remove(0);
+    let names: Vec<&str> = simulink
         .columns
         .iter()
         .map(|column| column.name.as_str())
         .collect();
     assert_eq!(
-        (names, of.columns[1].unit.as_deref()),
+        (names, simulink.columns[1].unit.as_deref()),
         (vec!["time", "LON", "rates_1", "rates_2"], Some("%"))
     );
 }
 
 #[test]
-fn a_model_and_a_few_numbers_are_no_record() {
+fn matrices_of_a_model_and_short_columns_are_not_records() {
     let scalar = |value: f64| numbers(1, 1, move |_| value);
     let model = vec![
         ("A", numbers(60, 60, |_| 0.0)),
@@ -513,7 +515,7 @@ fn a_model_and_a_few_numbers_are_no_record() {
         ("D", scalar(0.0)),
     ];
     assert!(
-        searched("sys", Value::Struct(record(model)))
+        search("sys", Value::Struct(struct_of(model)))
             .items
             .is_empty()
     );
@@ -521,7 +523,7 @@ fn a_model_and_a_few_numbers_are_no_record() {
         ("t", numbers(10, 1, |k| k as f64)),
         ("P", numbers(10, 1, |k| k as f64)),
     ];
-    let found = searched("x", Value::Struct(record(short)));
+    let found = search("x", Value::Struct(struct_of(short)));
     assert_eq!(
         (found.items.len(), found.ignored),
         (0, vec!["x: a 1 x 1 struct array".to_owned()])
@@ -529,7 +531,7 @@ fn a_model_and_a_few_numbers_are_no_record() {
 }
 
 #[test]
-fn damaged_files_are_faults_and_never_a_panic() {
+fn damaged_files_never_cause_a_panic() {
     for name in [
         "units.csv",
         "sides.mat",
@@ -550,9 +552,8 @@ fn damaged_files_are_faults_and_never_a_panic() {
     }
 }
 
-// Tests of aircraft logs, and of topics in separate files.
-
-fn sides(inputs: &[&str], outputs: &[&str]) -> RecordChannels {
+/// Returns channels without units, for aircraft logs and topics in separate files.
+fn channels_named(inputs: &[&str], outputs: &[&str]) -> RecordChannels {
     let rules = |names: &[&str]| names.iter().map(|name| ChannelRule::named(*name)).collect();
     RecordChannels {
         inputs: rules(inputs),
@@ -562,11 +563,11 @@ fn sides(inputs: &[&str], outputs: &[&str]) -> RecordChannels {
 }
 
 #[test]
-fn a_log_of_px4_is_opened_with_channels_proposed_in_the_units_of_its_documentation() {
+fn channels_of_a_px4_log_are_proposed_with_their_documented_units() {
     let bytes = include_bytes!("../../../../../tests/data/logs/quadrotor.ulg");
     let found = records_of_bytes(bytes, "quadrotor.ulg", &ReadingBudget::new(MOST_MEMORY)).unwrap();
     assert_eq!(found.tables.len(), 1);
-    let channels = sides(&["LAT", "LON", "PED"], &["P", "Q", "R", "NX"]);
+    let channels = channels_named(&["LAT", "LON", "PED"], &["P", "Q", "R", "NX"]);
     let table = found.tables.into_iter().next().unwrap();
     let notes = RecordLayout::proposed(&table, &channels, &TimeSettings::default()).notes;
     let (record, _) = LaidOutRecord::proposed(table, &channels, &TimeSettings::default());
@@ -592,7 +593,7 @@ fn a_log_of_px4_is_opened_with_channels_proposed_in_the_units_of_its_documentati
     let flight = record.flight.unwrap();
     assert!(
         flight.time_s.len() > 250 && flight.time_s[0] > 120.0,
-        "16 s, two minutes after the start"
+        "the log covers 16 s and begins two minutes after the start of the autopilot"
     );
     assert!(
         record.table.modes.iter().any(|mode| mode.name == "armed"),
@@ -602,7 +603,7 @@ fn a_log_of_px4_is_opened_with_channels_proposed_in_the_units_of_its_documentati
 }
 
 #[test]
-fn each_flight_in_a_blackbox_is_a_record() {
+fn each_flight_with_frames_in_a_blackbox_log_is_a_record() {
     let bytes = include_bytes!("../../../../../tests/data/logs/two-flights.bbl");
     let found =
         records_of_bytes(bytes, "two-flights.bbl", &ReadingBudget::new(MOST_MEMORY)).unwrap();
@@ -617,7 +618,7 @@ fn each_flight_in_a_blackbox_is_a_record() {
         "{:?}",
         found.tables[0].notes
     );
-    let channels = sides(&["LAT", "LON", "PED", "COL"], &["P", "Q", "R"]);
+    let channels = channels_named(&["LAT", "LON", "PED", "COL"], &["P", "Q", "R"]);
     let (record, _) = LaidOutRecord::proposed(
         found.tables.into_iter().next().unwrap(),
         &channels,
@@ -631,53 +632,59 @@ fn each_flight_in_a_blackbox_is_a_record() {
         .map(|pair| pair[1] - pair[0])
         .collect();
     // The log holds every sixteenth controller cycle; a cycle takes two gyro samples of 125 µs.
+    let regular = steps
+        .iter()
+        .filter(|step| (**step - 0.004).abs() < 1e-5)
+        .count();
     assert!(
-        steps
-            .iter()
-            .filter(|step| (**step - 0.004).abs() < 1e-5)
-            .count()
-            * 10
-            > 9 * steps.len()
+        regular * 10 > 9 * steps.len(),
+        "{regular} of {} steps take 4 ms, which is not 90 %",
+        steps.len()
     );
     let motor = &record.table.columns[record.table.find("motor[0]").unwrap()];
     let (least, most) = motor.range().unwrap();
     assert!(
         (158.0..2048.0).contains(&least) && most < 2048.0,
-        "as the heading says: {least} to {most}"
+        "the heading states 158 to 2048: {least} to {most}"
     );
 }
 
+/// Returns 20 s of a topic with a single field, in CSV.
+fn topic_table(rate_hz: u32, field: &str) -> String {
+    let mut text = format!("time,{field}\n");
+    for k in 0..20 * rate_hz {
+        let time_s = f64::from(k) / f64::from(rate_hz);
+        text.push_str(&format!("{time_s},{}\n", f64::from(k % 17)));
+    }
+    text
+}
+
 #[test]
-fn topic_tables_in_an_archive_are_a_single_record() {
+fn topic_tables_in_a_folder_are_joined_into_one_record() {
     let folder = tempfile::tempdir().unwrap();
-    let rows = |rate: u32, name: &str| {
-        let row = |k: u32| format!("{},{}\n", f64::from(k) / f64::from(rate), f64::from(k % 17));
-        format!(
-            "time,{name}\n{}",
-            (0..20 * rate).map(row).collect::<String>()
-        )
-    };
     std::fs::write(folder.path().join("notes.log"), "it went well").unwrap();
-    std::fs::write(folder.path().join("M.csv"), rows(100, "value")).unwrap();
-    std::fs::write(folder.path().join("imu.csv"), rows(50, "q")).unwrap();
+    std::fs::write(folder.path().join("M.csv"), topic_table(100, "value")).unwrap();
+    std::fs::write(folder.path().join("imu.csv"), topic_table(50, "q")).unwrap();
     let found = read_records(&[folder.path().to_owned()], &Stopped(&Arc::default())).unwrap();
     let tables = with_topics_joined(
         found.tables,
-        &sides(&["M"], &["q"]),
+        &channels_named(&["M"], &["q"]),
         &TimeSettings::default(),
     );
     assert_eq!(
         (tables.len(), found.faults),
         (1, Vec::new()),
-        "other programs' logs are passed over"
+        "a text without a table is ignored, not a fault"
     );
     let (record, _) = LaidOutRecord::proposed(
         tables[0].clone(),
-        &sides(&["M"], &["q"]),
+        &channels_named(&["M"], &["q"]),
         &TimeSettings::default(),
     );
-    let first = record.flight.unwrap();
-    assert!(record.problems.is_empty() && first.time_s.len() > 900);
+    assert!(record.problems.is_empty(), "{:?}", record.problems);
+    // 20 s at the lower rate of 50 Hz are 1000 samples.
+    let samples = record.flight.unwrap().time_s.len();
+    assert!(samples > 900, "{samples} samples");
     // A dataset refers to the records by their folder and the name of the joined topics.
     let again = load_records(
         folder.path(),
@@ -691,7 +698,7 @@ fn topic_tables_in_an_archive_are_a_single_record() {
 }
 
 #[test]
-fn a_first_line_that_numbers_the_columns_is_no_sample() {
+fn a_first_line_of_column_numbers_is_not_a_sample() {
     let rows: String = (0..60)
         .map(|k| format!("{},{},{}\n", 0.02 * f64::from(k), k, 2 * k))
         .collect();
@@ -714,7 +721,7 @@ fn fdata_of_sidpac_is_read_with_the_names_of_its_columns() {
     // SIDPAC stores flight data in the columns of `fdata`, and their names with units in the rows
     // of `varlab`.
     let rows = 80;
-    let column = |of: fn(f64) -> f64| (0..rows).map(move |row| of(f64::from(row)));
+    let column = |value: fn(f64) -> f64| (0..rows).map(move |row| value(f64::from(row)));
     let values: Vec<f64> = column(|k| 0.02 * k)
         .chain(column(|k| 2.0 + (0.1 * k).sin()))
         .chain(column(|k| 3.0 - (0.1 * k).cos()))

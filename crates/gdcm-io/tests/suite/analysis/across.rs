@@ -7,7 +7,7 @@ use gdcm_study::jobs::across_job::AcrossJob;
 use gdcm_study::jobs::job::Job;
 
 #[test]
-fn models_that_are_not_there_are_left_out_and_the_others_keep_their_order() {
+fn absent_models_are_left_out_and_the_others_keep_their_order() {
     let dataset = embedded_example().unwrap().dataset;
     let ids = [2, 0].map(|index| {
         let condition = &dataset.conditions()[index];
@@ -25,13 +25,18 @@ fn models_that_are_not_there_are_left_out_and_the_others_keep_their_order() {
         grid: (band, 5),
     };
     let curves = job.run(&mut (), &Unobserved).unwrap();
-    let found: Vec<&ModelId> = curves.responses.iter().map(|found| &found.model).collect();
+    let found: Vec<&ModelId> = curves
+        .responses
+        .iter()
+        .map(|response| &response.model)
+        .collect();
     assert_eq!(found, [&ids[0], &ids[1]]);
     let pair = job.dataset.measuring_pairs().marked().next().unwrap();
     assert!(
         curves
             .responses
             .iter()
-            .all(|found| found.response.curve(pair).len() == 5 && found.coupled.is_none())
+            .all(|found| found.response.curve(pair).len() == 5 && found.coupled.is_none()),
+        "every response has the 5 requested points, and none a coupled response"
     );
 }

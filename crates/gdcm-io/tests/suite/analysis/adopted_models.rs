@@ -8,12 +8,12 @@ use gdcm_study::decisions::adopted_models::AdoptedModels;
 use gdcm_study::decisions::edit_refusal::EditRefusal;
 use gdcm_study::{Edit, Study};
 
-fn study() -> Study {
+fn example_study() -> Study {
     Study::new(embedded_example().unwrap().dataset)
 }
 
 /// Returns the identified models of condition 1 under other names.
-fn others(study: &Study) -> Arc<AdoptedModels> {
+fn renamed_models(study: &Study) -> Arc<AdoptedModels> {
     let models = study.dataset.conditions()[0].bundle(BundleKind::Identified);
     let renamed = |model: &Model| Model {
         name: format!("{} again", model.name),
@@ -26,24 +26,28 @@ fn others(study: &Study) -> Arc<AdoptedModels> {
 }
 
 #[test]
-fn models_are_taken_and_returned_and_decisions_about_absent_ones_go() {
-    let mut study = study();
+fn adopted_models_replace_those_of_the_file_and_end_decisions_about_them() {
+    let mut study = example_study();
     let before = study.clone();
     let id = ConditionId(1);
-    let first = study.dataset.conditions()[0].bundle(BundleKind::Identified)[0]
+    let first_name = study.dataset.conditions()[0].bundle(BundleKind::Identified)[0]
         .name
         .clone();
     study
-        .apply(&Edit::Pin(ModelId::new(id, BundleKind::Identified, &first)))
+        .apply(&Edit::Pin(ModelId::new(
+            id,
+            BundleKind::Identified,
+            &first_name,
+        )))
         .unwrap();
     study
         .apply(&Edit::StoreVariant {
             name: "pinned".into(),
         })
         .unwrap();
-    let taken = others(&study);
+    let adopted = renamed_models(&study);
     study
-        .apply(&Edit::AdoptModels(vec![(id, Arc::clone(&taken))]))
+        .apply(&Edit::AdoptModels(vec![(id, Arc::clone(&adopted))]))
         .unwrap();
     assert_eq!(
         study
@@ -51,17 +55,17 @@ fn models_are_taken_and_returned_and_decisions_about_absent_ones_go() {
             .condition(id)
             .unwrap()
             .bundle(BundleKind::Identified),
-        taken.models
+        adopted.models
     );
     assert_eq!(
         study.choice(id).identified.pinned,
         None,
-        "the pinned model is gone"
+        "the pinned model is no longer in the dataset"
     );
     assert_eq!(study.variants[0].choices[&id].identified.pinned, None);
     assert!(
         Arc::ptr_eq(study.file_dataset(), &before.dataset),
-        "the file's dataset is known still"
+        "the dataset of the file is kept for restoring"
     );
     study
         .apply(&Edit::RestoreFileModels { condition: id })
@@ -70,16 +74,19 @@ fn models_are_taken_and_returned_and_decisions_about_absent_ones_go() {
 }
 
 #[test]
-fn models_of_another_shape_are_refused_and_nothing_is_taken() {
-    let mut study = study();
+fn a_refused_adoption_changes_no_condition() {
+    let mut study = example_study();
     let before = study.clone();
-    let nothing = Arc::new(AdoptedModels {
+    let no_models = Arc::new(AdoptedModels {
         models: Vec::new(),
         records: Vec::new(),
     });
-    let good = (ConditionId(1), others(&study));
+    let accepted = (ConditionId(1), renamed_models(&study));
     let refusal = study
-        .apply(&Edit::AdoptModels(vec![good, (ConditionId(2), nothing)]))
+        .apply(&Edit::AdoptModels(vec![
+            accepted,
+            (ConditionId(2), no_models),
+        ]))
         .unwrap_err();
     assert!(
         matches!(
@@ -91,9 +98,12 @@ fn models_of_another_shape_are_refused_and_nothing_is_taken() {
         ),
         "{refusal}"
     );
-    assert_eq!(study, before);
+    assert_eq!(study, before, "condition 1 keeps its models too");
     let absent = study
-        .apply(&Edit::AdoptModels(vec![(ConditionId(99), others(&before))]))
+        .apply(&Edit::AdoptModels(vec![(
+            ConditionId(99),
+            renamed_models(&before),
+        )]))
         .unwrap_err();
     assert_eq!(
         absent,
@@ -104,22 +114,22 @@ fn models_of_another_shape_are_refused_and_nothing_is_taken() {
 }
 
 #[test]
-fn a_saved_study_and_a_reloaded_dataset_keep_the_models_taken() {
+fn adopted_models_survive_saving_the_study_and_reloading_its_dataset() {
     use gdcm_io::files::study_file::open_study;
     use gdcm_io::save_study;
     let loaded = embedded_example().unwrap();
     let mut study = Study::new(loaded.dataset.clone());
-    let taken = others(&study);
+    let adopted = renamed_models(&study);
     study
         .apply(&Edit::AdoptModels(vec![(
             ConditionId(1),
-            Arc::clone(&taken),
+            Arc::clone(&adopted),
         )]))
         .unwrap();
     let pinned = ModelId::new(
         ConditionId(1),
         BundleKind::Identified,
-        &taken.models[0].name,
+        &adopted.models[0].name,
     );
     study.apply(&Edit::Pin(pinned)).unwrap();
     let folder = tempfile::tempdir().unwrap();
@@ -130,6 +140,6 @@ fn a_saved_study_and_a_reloaded_dataset_keep_the_models_taken() {
     assert!(opened.differences.is_empty(), "{:?}", opened.differences);
 
     let (reloaded, differences) = opened.study.reconciled(embedded_example().unwrap().dataset);
-    assert_eq!(reloaded, study, "models, and decisions about them");
+    assert_eq!(reloaded, study, "the adopted models and the pin are kept");
     assert!(differences.is_empty(), "{differences:?}");
 }

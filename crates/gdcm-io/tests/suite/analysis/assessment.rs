@@ -14,16 +14,17 @@ use gdcm_study::results::assessment_table::{
 
 use super::*;
 
-const PAPER: AssessmentChoice = AssessmentChoice {
+/// The assessment of the paper: the nominal model under the schedule, with medians over frequency.
+const PAPER_CHOICE: AssessmentChoice = AssessmentChoice {
     model: AssessedModel::Nominal,
     correction: AssessedCorrection::Scheduled,
     average: CostAverage::Median,
 };
 
 #[test]
-fn the_assessment_of_the_paper_is_that_of_the_analysis() {
+fn the_assessment_of_the_paper_equals_that_of_the_analysis() {
     let analysis = &*EXAMPLE_WITH_SUGGESTIONS_REJECTED;
-    let table = AssessmentTable::assess(analysis, PAPER);
+    let table = AssessmentTable::assess(analysis, PAPER_CHOICE);
     assert_eq!(table.left_out.len(), 1);
     assert_eq!(
         (table.left_out[0].condition, table.left_out[0].why.code()),
@@ -38,24 +39,24 @@ fn the_assessment_of_the_paper_is_that_of_the_analysis() {
     }
     let job = AssessmentJob {
         analysis: Arc::new(analysis.clone()).into(),
-        choice: PAPER,
+        choice: PAPER_CHOICE,
     };
     assert_eq!(*job.run(&mut (), &Unobserved).unwrap(), table);
 }
 
 #[test]
-fn each_conditions_own_optimum_of_the_representative_is_what_its_result_says() {
+fn the_assessed_own_correction_of_a_representative_has_the_costs_of_its_result() {
     let analysis = &*EXAMPLE_WITH_SUGGESTIONS_REJECTED;
     let own = AssessmentChoice {
         model: AssessedModel::Representative,
         correction: AssessedCorrection::Own,
-        ..PAPER
+        ..PAPER_CHOICE
     };
     let table = AssessmentTable::assess(analysis, own);
     assert_eq!(
         (table.conditions.len(), table.left_out.len()),
         (11, 0),
-        "a rejected nominal model is not asked for"
+        "condition 10 is assessed although its nominal model is rejected"
     );
     for assessed in &table.conditions {
         let result = analysis.condition(assessed.condition).unwrap();
@@ -68,13 +69,13 @@ fn each_conditions_own_optimum_of_the_representative_is_what_its_result_says() {
 }
 
 #[test]
-fn the_mean_weighs_single_frequencies_that_the_median_leaves_out() {
+fn the_mean_magnitude_cost_is_twenty_times_the_mean_square_in_db() {
     let analysis = &*EXAMPLE_WITH_SUGGESTIONS_REJECTED;
     let mean = AssessmentTable::assess(
         analysis,
         AssessmentChoice {
             average: CostAverage::Mean,
-            ..PAPER
+            ..PAPER_CHOICE
         },
     );
     let condition = ConditionId(1);
@@ -98,10 +99,10 @@ fn the_mean_weighs_single_frequencies_that_the_median_leaves_out() {
 }
 
 #[test]
-fn a_summary_counts_the_better_and_names_the_worst() {
+fn a_summary_counts_improved_responses_and_names_the_worst() {
     let analysis = &*EXAMPLE_WITH_SUGGESTIONS_REJECTED;
     let dataset = &analysis.study.dataset;
-    let table = AssessmentTable::assess(analysis, PAPER);
+    let table = AssessmentTable::assess(analysis, PAPER_CHOICE);
     let summary = table.summary(dataset.on_axis());
     assert_eq!(
         summary.compared, 50,
@@ -110,11 +111,11 @@ fn a_summary_counts_the_better_and_names_the_worst() {
     let (condition, pair, change) = summary.worst.unwrap();
     assert_eq!(table.change(condition, pair).unwrap().total(), change);
     let changes = || {
-        table.conditions.iter().flat_map(|of| {
+        table.conditions.iter().flat_map(|assessed| {
             dataset
                 .on_axis()
                 .marked()
-                .map(|pair| of.changes[pair].unwrap().total())
+                .map(|pair| assessed.changes[pair].unwrap().total())
         })
     };
     assert!(changes().all(|other| other <= change));
@@ -127,7 +128,7 @@ fn a_summary_counts_the_better_and_names_the_worst() {
 }
 
 #[test]
-fn evidence_is_of_the_scheduled_conditions_and_agrees_with_the_schedule() {
+fn schedule_forms_are_compared_over_the_scheduled_conditions() {
     let analysis = &*EXAMPLE_WITH_SUGGESTIONS_REJECTED;
     let evidence = analysis.compare_forms().unwrap();
     let scheduled = analysis.scheduled();
@@ -140,31 +141,24 @@ fn evidence_is_of_the_scheduled_conditions_and_agrees_with_the_schedule() {
         (11, 11, SCHEDULE_KINDS.len())
     );
     let schedule = analysis.schedule.as_ref().unwrap();
-    let of_kind = evidence.form(schedule.settings.kind).unwrap();
+    let fitted_form = evidence.form(schedule.settings.kind).unwrap();
     for (place, id) in scheduled.iter().enumerate() {
         let own = &analysis.condition(*id).unwrap().correction;
         let at = schedule.at(evidence.airspeeds_kt[place]);
         for pair in analysis.study.dataset.on_axis().marked() {
-            let residual = of_kind.pairs[pair].residuals[place].unwrap();
-            let own = own.net_gain(pair);
-            let scheduled = at.net_gain(pair);
-            assert!((residual.ln - (own / scheduled).ln()).abs() < 1e-14);
-            assert!((residual.percent - 100.0 * (own / scheduled - 1.0)).abs() < 1e-11);
+            let residual = fitted_form.pairs[pair].residuals[place].unwrap();
+            let ratio = own.net_gain(pair) / at.net_gain(pair);
+            // Rounding only: both sides take the same gains.
+            assert!((residual.ln - ratio.ln()).abs() < 1e-14);
+            assert!((residual.percent - 100.0 * (ratio - 1.0)).abs() < 1e-11);
         }
     }
-    let on_axis = || {
-        analysis
-            .study
-            .dataset
-            .on_axis()
-            .marked()
-            .collect::<Vec<_>>()
-    };
-    let errors = evidence
+    let on_axis: Vec<Pair> = analysis.study.dataset.on_axis().marked().collect();
+    let errors: Vec<f64> = evidence
         .fits
         .iter()
-        .map(|fit| fit.left_out_rms_ln(on_axis()).unwrap())
-        .collect::<Vec<f64>>();
+        .map(|fit| fit.left_out_rms_ln(on_axis.clone()).unwrap())
+        .collect();
     // The gain deficits of the example change by tens of percent over airspeed, so the constant
     // schedule predicts left-out conditions worst.
     assert!(
@@ -174,7 +168,7 @@ fn evidence_is_of_the_scheduled_conditions_and_agrees_with_the_schedule() {
 }
 
 #[test]
-fn delays_are_scheduled_within_the_bounds_of_their_conditions_where_that_is_asked_for() {
+fn scheduled_delays_stay_within_the_bounds_of_their_conditions() {
     let mut study = study_of_example();
     let mut engine = Engine::default();
     study.apply(&setting_table::POINTS.to(40)).unwrap();
@@ -203,7 +197,9 @@ fn delays_are_scheduled_within_the_bounds_of_their_conditions_where_that_is_aske
         let is_alone = clusters
             .iter()
             .any(|cluster| cluster.len() == 1 && on.scheduled()[cluster[0]] == id);
-        assert!(!is_alone || upper_s == result.delay_upper_s());
+        if is_alone {
+            assert_eq!(upper_s, result.delay_upper_s(), "condition {id}");
+        }
         for delay_s in at.input_delays_s.iter().chain(&at.output_delays_s) {
             assert!(
                 (0.0..=upper_s).contains(delay_s),
@@ -216,7 +212,7 @@ fn delays_are_scheduled_within_the_bounds_of_their_conditions_where_that_is_aske
             [0.0; 6]
         );
     }
-    assert!(delayed > 0);
+    assert!(delayed > 0, "no channel has a scheduled delay");
     assert_ne!(
         on.assessment, off.assessment,
         "the scheduled correction is assessed with its delays"

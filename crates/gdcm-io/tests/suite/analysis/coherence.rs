@@ -4,11 +4,7 @@ use std::sync::Arc;
 
 use gdcm_method::fidelity::CostAverage;
 use gdcm_method::fidelity::coherence_weights::coherence_weight;
-use gdcm_model::dataset::condition::FlightState;
-use gdcm_model::dataset::dataset::DatasetHeader;
-use gdcm_model::dataset::measured_response::MeasuredResponse;
-use gdcm_model::dataset::model::Origin;
-use gdcm_model::dataset::{Band, Channel, Condition, Dataset, Model};
+use gdcm_model::dataset::{Band, Dataset};
 use gdcm_study::ConditionAnalysis;
 use gdcm_study::decisions::edit_refusal::EditRefusal;
 use gdcm_study::decisions::settings::{DEFAULT_COHERENCE, Settings};
@@ -16,101 +12,71 @@ use gdcm_study::results::caution::{Caution, Undefined};
 use gdcm_study::results::condition_remarks::condition_remarks;
 use gdcm_study::results::remark::Remark;
 
+use super::measured_flight::{dataset_with_flight, flight_state, measured_response};
 use super::responses::model_of;
 use super::*;
 
+/// The only condition of the dataset.
 const ONLY: ConditionId = ConditionId(1);
+/// Gain of every measured response relative to the physics model.
 const GAIN: f64 = 1.2;
+/// Delay of every measured response relative to the physics model.
 const DELAY_S: f64 = 0.03;
 
 /// Frequencies \[rad/s\] at which the measurement of the first response contains only noise.
-const NOISE: std::ops::Range<f64> = 0.0..8.0;
+const NOISE_RAD_S: std::ops::Range<f64> = 0.0..8.0;
 
 /// Returns a dataset with a published helicopter as the physics model and a measured response as
-/// the identified one: every response has an additional gain and delay, and the first is noise
-/// within [`NOISE`]. `coherence` gives the coherence of a response (by index; 0 is the first) at a
-/// frequency.
-fn dataset(coherence: Option<&dyn Fn(usize, f64) -> f64>, bands: Option<[f64; 2]>) -> Arc<Dataset> {
+/// the identified one: every response has the additional [`GAIN`] and [`DELAY_S`], and the first is
+/// noise within [`NOISE_RAD_S`] if `coherence` is given. `coherence` returns the coherence of a
+/// response (by index; 0 is the first) at a frequency; `band` limits the valid frequencies of all
+/// responses.
+fn dataset(coherence: Option<&dyn Fn(usize, f64) -> f64>, band: Option<[f64; 2]>) -> Arc<Dataset> {
     let dynamics = model_of("compleib_HE2_AH64_130kt.json");
     let (outputs, inputs) = dynamics.shape();
     let grid = FrequencyGrid::logarithmic(Band::new(0.5, 12.0).unwrap(), 200);
     let flight = FrequencyResponse::from_dynamics(&dynamics, &grid)
         .curves()
         .map(|pair, values| {
-            let turned = |(k, (value, omega)): (usize, (&Complex<f64>, &f64))| {
-                let is_noise =
-                    coherence.is_some() && pair == Pair::new(0, 0) && NOISE.contains(omega);
-                let noise = if is_noise {
+            let has_noise = coherence.is_some() && pair == Pair::new(0, 0);
+            let mut measured = Vec::with_capacity(values.len());
+            for (k, (value, omega)) in values.iter().zip(grid.omega()).enumerate() {
+                let noise = if has_noise && NOISE_RAD_S.contains(omega) {
+                    // Three times the true gain, at scattered phases.
                     Complex::from_polar(3.0, 2.3 * (k * k) as f64)
                 } else {
                     Complex::from(1.0)
                 };
-                value * Complex::from_polar(GAIN, -omega * DELAY_S) * noise
-            };
-            values
-                .iter()
-                .zip(grid.omega())
-                .enumerate()
-                .map(turned)
-                .collect::<Vec<_>>()
+                measured.push(value * Complex::from_polar(GAIN, -omega * DELAY_S) * noise);
+            }
+            measured
         });
-    let part = |of: fn(&Complex<f64>) -> f64| {
-        flight.map(|_, values| values.iter().map(of).collect::<Vec<f64>>())
-    };
-    let coherence = coherence.map(|of| {
+    let coherence = coherence.map(|coherence_at| {
         flight.map(|pair, _| {
             let number = pair.output * inputs + pair.input;
             grid.omega()
                 .iter()
-                .map(|omega| of(number, *omega))
+                .map(|omega| coherence_at(number, *omega))
                 .collect::<Vec<f64>>()
         })
     });
-    let re = part(|value| value.re);
-    let im = part(|value| value.im);
-    let mut measured = MeasuredResponse::new(grid.omega().to_vec(), &re, &im, coherence).unwrap();
-    if let Some(band) = bands {
+    let mut measured = measured_response(&grid, &flight, coherence);
+    if let Some(band) = band {
         measured = measured
             .with_valid_bands(PairTable::filled(outputs, inputs, band))
             .unwrap();
     }
-    let physics = Model::new("nominal", Origin::Nominal { perturbation: None }, dynamics);
-    let origin = Origin::Identified {
-        method: None,
-        order: None,
-    };
-    let identified = Model::new("flight", origin, Dynamics::Measured(measured));
-    let flight_state = FlightState {
-        id: ONLY,
-        name: "130 kt".to_owned(),
-        airspeed_kt: 130.0,
-        altitude: None,
-        altitude_ft: None,
-        weight: None,
-        mass_kg: None,
-    };
-    let channels = |letter: &str, count| {
-        (0..count)
-            .map(|index| Channel::new(format!("{letter}{index}"), ""))
-            .collect()
-    };
-    let header = DatasetHeader {
-        name: "coherence".to_owned(),
-        description: String::new(),
-        inputs: channels("u", inputs),
-        outputs: channels("y", outputs),
-        on_axis: PairTable::filled(outputs, inputs, false),
-        band: Band::new(0.5, 12.0).unwrap(),
-        parameters: Vec::new(),
-    };
-    let condition = Condition::new(flight_state, vec![physics], vec![identified]).unwrap();
-    Arc::new(Dataset::new(header, vec![condition]).unwrap())
+    let on_axis = PairTable::filled(outputs, inputs, false);
+    let state = flight_state("130 kt", 130.0);
+    Arc::new(dataset_with_flight(state, dynamics, measured, on_axis))
 }
 
-fn noisy() -> Arc<Dataset> {
+/// Returns a dataset in which the coherence tells the noise of the first response: 0.1 where it is
+/// noise, 0.9 elsewhere.
+fn noisy_dataset() -> Arc<Dataset> {
     dataset(
         Some(&|response, omega| {
-            if response == 0 && NOISE.contains(&omega) {
+            if response == 0 && NOISE_RAD_S.contains(&omega) {
                 0.1
             } else {
                 0.9
@@ -120,18 +86,20 @@ fn noisy() -> Arc<Dataset> {
     )
 }
 
-fn with(dataset: &Arc<Dataset>, edits: &[Edit]) -> Analysis {
+fn analysis_with(dataset: &Arc<Dataset>, edits: &[Edit]) -> Analysis {
     let mut study = Study::new(Arc::clone(dataset));
-    edits.iter().for_each(|edit| study.apply(edit).unwrap());
+    for edit in edits {
+        study.apply(edit).unwrap();
+    }
     analyze(&mut Engine::default(), &study)
 }
 
-fn only(analysis: &Analysis) -> &ConditionAnalysis {
+fn only_result(analysis: &Analysis) -> &ConditionAnalysis {
     analysis.condition(ONLY).unwrap()
 }
 
 #[test]
-fn the_weights_are_those_of_the_reference() {
+fn coherence_weights_match_the_reference() {
     let golden = json(include_str!(
         "../../../../../tests/data/reference/muad-golden.json"
     ));
@@ -149,12 +117,12 @@ fn the_weights_are_those_of_the_reference() {
 }
 
 #[test]
-fn frequencies_that_were_not_measured_leave_g_d_j_and_the_bounds() {
-    let analysis = with(
-        &noisy(),
+fn incoherent_frequencies_do_not_affect_g_d_j_and_the_bounds() {
+    let analysis = analysis_with(
+        &noisy_dataset(),
         &[setting_table::COST_AVERAGE.to(CostAverage::Mean)],
     );
-    let result = only(&analysis);
+    let result = only_result(&analysis);
     for (pair, gain) in result.comparison.delta.gain.iter() {
         // Rounding only: the response is measured at the frequencies of the analysis and converted
         // to dB and back.
@@ -174,46 +142,47 @@ fn frequencies_that_were_not_measured_leave_g_d_j_and_the_bounds() {
     for pair in result.cost.pairs() {
         assert!(
             (magnitude(pair) / expected - 1.0).abs() < 1e-11,
-            "{pair:?}: the mean over those that count"
+            "{pair:?}: the mean over the coherent frequencies"
         );
     }
-    let off = with(
-        &noisy(),
+    let off = analysis_with(
+        &noisy_dataset(),
         &[
             setting_table::COST_AVERAGE.to(CostAverage::Mean),
             setting_table::COHERENCE.to(None::<f64>),
         ],
     );
-    let gain = only(&off).comparison.delta.gain[Pair::new(0, 0)].unwrap();
+    let gain = only_result(&off).comparison.delta.gain[Pair::new(0, 0)].unwrap();
     assert!(
         (gain / (3.0 * GAIN) - 1.0).abs() < 1e-12,
         "most of the band is noise of three times the gain"
     );
-    assert!(only(&off).gain_bounds().upper > 3.0);
+    assert!(only_result(&off).gain_bounds().upper > 3.0);
 }
 
 #[test]
-fn equal_coherence_gives_the_medians_of_no_coherence_to_the_last_digit() {
+fn equal_coherence_gives_exactly_the_medians_without_coherence() {
     let equal = dataset(Some(&|_, _| 0.8), None);
     for points in [200, 131] {
         let points = setting_table::POINTS.to(points);
-        let on = with(&equal, std::slice::from_ref(&points));
-        let off = with(&equal, &[points, setting_table::COHERENCE.to(None::<f64>)]);
+        let on = analysis_with(&equal, std::slice::from_ref(&points));
+        let off = analysis_with(&equal, &[points, setting_table::COHERENCE.to(None::<f64>)]);
         assert_eq!(
             on.study.settings.coherence_threshold,
             Some(DEFAULT_COHERENCE),
-            "it is on by default"
+            "a dataset with coherence has a threshold by default"
         );
-        let on = only(&on);
-        let off = only(&off);
-        let [of_on, of_off] = [&on, &off].map(|of| &of.comparison.delta);
+        let on = only_result(&on);
+        let off = only_result(&off);
+        let delta_on = &on.comparison.delta;
+        let delta_off = &off.comparison.delta;
         assert_eq!(
-            (&of_on.gain, &of_on.delay_s),
-            (&of_off.gain, &of_off.delay_s)
+            (&delta_on.gain, &delta_on.delay_s),
+            (&delta_off.gain, &delta_off.delay_s)
         );
-        for (pair, delay_s) in of_on.band_delay_s.iter() {
+        for (pair, delay_s) in delta_on.band_delay_s.iter() {
             // Rounding of a weighted mean of 200 terms.
-            assert!((delay_s.unwrap() - of_off.band_delay_s[pair].unwrap()).abs() < 1e-14);
+            assert!((delay_s.unwrap() - delta_off.band_delay_s[pair].unwrap()).abs() < 1e-14);
         }
         assert_eq!(
             (&on.gain_problem, &on.delay_problem),
@@ -224,11 +193,11 @@ fn equal_coherence_gives_the_medians_of_no_coherence_to_the_last_digit() {
 }
 
 #[test]
-fn a_dataset_without_coherence_gives_the_same_whether_it_is_on_or_off() {
+fn a_threshold_has_no_effect_on_a_dataset_without_coherence() {
     let plain = dataset(None, None);
     assert_eq!(Settings::for_dataset(&plain).coherence_threshold, None);
-    let off = with(&plain, &[]);
-    let on = with(&plain, &[setting_table::COHERENCE.to(Some(0.9))]);
+    let off = analysis_with(&plain, &[]);
+    let on = analysis_with(&plain, &[setting_table::COHERENCE.to(Some(0.9))]);
     assert_eq!(
         (&off.conditions, &off.schedule),
         (&on.conditions, &on.schedule)
@@ -236,40 +205,40 @@ fn a_dataset_without_coherence_gives_the_same_whether_it_is_on_or_off() {
 }
 
 #[test]
-fn what_is_outside_the_valid_band_counts_for_nothing() {
-    let good = |response: usize, omega: f64| {
-        if response == 0 && NOISE.contains(&omega) {
+fn frequencies_outside_the_valid_band_have_no_weight() {
+    // Above the threshold even where the first response is noise: only the band excludes it.
+    let coherence = |response: usize, omega: f64| {
+        if response == 0 && NOISE_RAD_S.contains(&omega) {
             0.7
         } else {
             0.9
         }
     };
-    let banded = dataset(Some(&good), Some([8.0, 11.0]));
-    let result = with(&banded, &[]);
-    for (_, mismatch) in only(&result).comparison.representative.mismatch.iter() {
-        let omega = mismatch
-            .as_ref()
-            .unwrap()
-            .coherence_weights
-            .as_ref()
-            .unwrap()
-            .omega
-            .as_slice();
-        assert!(omega.iter().all(|omega| (8.0..=11.0).contains(omega)) && omega.len() > 10);
+    let banded = dataset(Some(&coherence), Some([8.0, 11.0]));
+    let result = analysis_with(&banded, &[]);
+    let mismatches = &only_result(&result).comparison.representative.mismatch;
+    for (pair, mismatch) in mismatches.iter() {
+        let mismatch = mismatch.as_ref().unwrap();
+        let omega = &mismatch.coherence_weights.as_ref().unwrap().omega;
+        assert!(omega.len() > 10, "{pair:?}: {} frequencies", omega.len());
+        assert!(
+            omega.iter().all(|omega| (8.0..=11.0).contains(omega)),
+            "{pair:?}: {omega:?}"
+        );
     }
-    let gain = only(&result).comparison.delta.gain[Pair::new(0, 0)].unwrap();
+    let gain = only_result(&result).comparison.delta.gain[Pair::new(0, 0)].unwrap();
     assert!((gain / GAIN - 1.0).abs() < 1e-12);
 }
 
 #[test]
-fn a_response_that_was_nowhere_measured_has_no_g_and_says_why() {
+fn a_response_without_coherent_frequencies_has_no_g_and_states_the_reason() {
     let never = dataset(
         Some(&|response, _| if response == 0 { 0.2 } else { 0.9 }),
         None,
     );
     let first = Pair::new(0, 0);
-    let analysis = with(&never, &[Edit::Hold(first, true)]);
-    let result = only(&analysis);
+    let analysis = analysis_with(&never, &[Edit::Hold(first, true)]);
+    let result = only_result(&analysis);
     assert_eq!(result.comparison.delta.gain[first], None);
     assert_eq!(
         result.comparison.undefined[first],
@@ -287,9 +256,9 @@ fn a_response_that_was_nowhere_measured_has_no_g_and_says_why() {
 }
 
 #[test]
-fn a_result_says_what_coherence_did() {
-    let analysis = with(&noisy(), &[]);
-    let result = only(&analysis);
+fn a_result_reports_the_effect_of_coherence() {
+    let analysis = analysis_with(&noisy_dataset(), &[]);
+    let result = only_result(&analysis);
     let [
         Caution::NotCoherent {
             left_out,
@@ -301,17 +270,24 @@ fn a_result_says_what_coherence_did() {
     else {
         panic!("{:?}", result.cautions)
     };
-    assert!(matches!(left_out[..], [(Pair { output: 0, input: 0 }, count)] if count > 100));
-
-    let equal = with(&dataset(Some(&|_, _| 0.8), None), &[]);
-    let said = condition_remarks(&equal.study, only(&equal), None);
+    // More than half of the 200 frequencies are below 8 rad/s, where the first response is noise.
     assert!(
-        said.contains(&Remark::CoherenceUsed { responses: 4 }),
-        "{said:?}"
+        matches!(left_out[..], [(Pair { output: 0, input: 0 }, count)] if count > 100),
+        "{left_out:?}"
     );
 
-    let off = with(&noisy(), &[setting_table::COHERENCE.to(None::<f64>)]);
-    let cautions = &only(&off).cautions;
+    let equal = analysis_with(&dataset(Some(&|_, _| 0.8), None), &[]);
+    let remarks = condition_remarks(&equal.study, only_result(&equal), None);
+    assert!(
+        remarks.contains(&Remark::CoherenceUsed { responses: 4 }),
+        "{remarks:?}"
+    );
+
+    let off = analysis_with(
+        &noisy_dataset(),
+        &[setting_table::COHERENCE.to(None::<f64>)],
+    );
+    let cautions = &only_result(&off).cautions;
     assert!(
         cautions.contains(&Caution::CoherenceNotUsed),
         "{cautions:?}"
@@ -320,7 +296,7 @@ fn a_result_says_what_coherence_did() {
 
 #[test]
 fn a_threshold_outside_0_to_1_is_refused() {
-    let mut study = Study::new(noisy());
+    let mut study = Study::new(noisy_dataset());
     for threshold in [-0.1, 1.1, f64::NAN] {
         let refusal = study
             .apply(&setting_table::COHERENCE.to(Some(threshold)))

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use serde_json::json;
 
 use gdcm_io::{DatasetOrigin, load_dataset_bytes};
-use gdcm_method::correction::Channel;
+use gdcm_method::correction::{Channel, ChannelCorrection};
 use gdcm_method::schedule::{DelayScheduling, ScheduleCaution, ScheduleKind};
 use gdcm_model::dataset::{BundleKind, Dataset, ModelId};
 use gdcm_study::results::analysis::ConditionFailure;
@@ -21,12 +21,17 @@ use gdcm_words::derivation::{ExplainTarget, derivation};
 use super::*;
 use crate::made_up::two_lags;
 
-/// Id of the condition in files with a single condition.
-const ONLY: ConditionId = ConditionId(1);
+/// Id of the only condition, or of the first in [`NEAR_AIRSPEEDS`].
+const CONDITION: ConditionId = ConditionId(1);
 
-const SHORT: &str = include_str!("../../../../../tests/data/edges/short-measurement.json");
+/// Six physics models, four identified models, and a response measured up to 11.9 rad/s only; the
+/// band ends at 12 rad/s.
+const SHORT_MEASUREMENT: &str =
+    include_str!("../../../../../tests/data/edges/short-measurement.json");
+/// Six outputs and four inputs, with gains that channel gains cannot explain.
 const SIX_BY_FOUR: &str = include_str!("../../../../../tests/data/edges/six-by-four.json");
-const NEAR: &str = include_str!("../../../../../tests/data/edges/near-airspeeds.json");
+/// Three conditions at 60, 60.000001 and 120 kt.
+const NEAR_AIRSPEEDS: &str = include_str!("../../../../../tests/data/edges/near-airspeeds.json");
 
 fn dataset(value: &Value) -> Arc<Dataset> {
     load_dataset_bytes(
@@ -37,14 +42,16 @@ fn dataset(value: &Value) -> Arc<Dataset> {
     .dataset
 }
 
-/// Returns the analysis of a file with a single condition after some edits.
-fn only(value: &Value, edits: &[Edit]) -> Analysis {
+/// Returns the analysis of a file after some edits.
+fn analysis_of(value: &Value, edits: &[Edit]) -> Analysis {
     let mut study = Study::new(dataset(value));
-    edits.iter().for_each(|edit| study.apply(edit).unwrap());
+    for edit in edits {
+        study.apply(edit).unwrap();
+    }
     analyze(&mut Engine::default(), &study)
 }
 
-fn words(analysis: &Analysis, result: &ConditionAnalysis) -> Vec<String> {
+fn caution_texts(analysis: &Analysis, result: &ConditionAnalysis) -> Vec<String> {
     let name = |pair| analysis.study.dataset.pair_name(pair);
     result
         .cautions
@@ -56,7 +63,7 @@ fn words(analysis: &Analysis, result: &ConditionAnalysis) -> Vec<String> {
 /// Returns the file with the measurement that ends at 11.9 rad/s moved to index `place` among the
 /// identified models; `None` removes it.
 fn with_short_measurement(place: Option<usize>) -> Value {
-    let mut value = json(SHORT);
+    let mut value = json(SHORT_MEASUREMENT);
     let models = value["conditions"][0]["identified_models"]
         .as_array_mut()
         .unwrap();
@@ -69,12 +76,12 @@ fn with_short_measurement(place: Option<usize>) -> Value {
 }
 
 #[test]
-fn a_measurement_that_ends_just_short_of_the_band_changes_nothing_for_the_others() {
-    let without = only(&with_short_measurement(None), &[]);
-    let expected = without.condition(ONLY).unwrap();
+fn a_measurement_that_ends_just_below_the_band_edge_does_not_affect_other_models() {
+    let without = analysis_of(&with_short_measurement(None), &[]);
+    let expected = without.condition(CONDITION).unwrap();
     for place in [0, 2, 4] {
-        let analysis = only(&with_short_measurement(Some(place)), &[]);
-        let found = analysis.condition(ONLY).unwrap();
+        let analysis = analysis_of(&with_short_measurement(Some(place)), &[]);
+        let found = analysis.condition(CONDITION).unwrap();
         assert_eq!(
             found.comparison.delta, expected.comparison.delta,
             "place {place}"
@@ -94,17 +101,17 @@ fn a_measurement_that_ends_just_short_of_the_band_changes_nothing_for_the_others
 }
 
 #[test]
-fn a_model_set_aside_is_named_with_what_it_lacks_and_its_pin_does_not_count() {
-    let short = ModelId::new(ONLY, BundleKind::Identified, "i4");
+fn a_model_set_aside_is_reported_with_the_responses_it_lacks_and_its_pin_is_ignored() {
+    let short = ModelId::new(CONDITION, BundleKind::Identified, "i4");
     let value = with_short_measurement(Some(4));
-    let free = only(&value, &[]);
-    let pinned = only(&value, &[Edit::Pin(short)]);
-    let found = pinned.condition(ONLY).unwrap();
+    let unpinned = analysis_of(&value, &[]);
+    let pinned = analysis_of(&value, &[Edit::Pin(short)]);
+    let found = pinned.condition(CONDITION).unwrap();
     assert_eq!(
         found.comparison.delta,
-        free.condition(ONLY).unwrap().comparison.delta
+        unpinned.condition(CONDITION).unwrap().comparison.delta
     );
-    let caution = words(&pinned, found).concat();
+    let caution = caution_texts(&pinned, found).concat();
     let [
         Caution::SetAside {
             model,
@@ -124,27 +131,28 @@ fn a_model_set_aside_is_named_with_what_it_lacks_and_its_pin_does_not_count() {
     assert_eq!(*lacks, [Pair::new(0, 0), Pair::new(1, 1)]);
     assert!((max - 11.9).abs() < 0.05, "{max}");
     let set_aside = |analysis| {
-        corrections(analysis, "", &BTreeSet::from([ONLY]))["conditions"][0]["set_aside"].clone()
+        corrections(analysis, "", &BTreeSet::from([CONDITION]))["conditions"][0]["set_aside"]
+            .clone()
     };
     assert_eq!(
         set_aside(&pinned),
         serde_json::json!([{"model": "i4", "why": caution}])
     );
     assert_eq!(
-        set_aside(&only(&with_short_measurement(None), &[])),
+        set_aside(&analysis_of(&with_short_measurement(None), &[])),
         serde_json::json!([])
     );
 }
 
 #[test]
-fn a_bundle_of_which_only_models_set_aside_are_kept_has_no_result_and_says_so() {
-    let reject = |name| Edit::Reject(ModelId::new(ONLY, BundleKind::Identified, name));
-    let analysis = only(
+fn a_condition_fails_if_every_kept_model_of_a_bundle_is_set_aside() {
+    let reject = |name| Edit::Reject(ModelId::new(CONDITION, BundleKind::Identified, name));
+    let analysis = analysis_of(
         &with_short_measurement(Some(4)),
         &["i0", "i1", "i2", "i3"].map(reject),
     );
     assert_eq!(
-        analysis.conditions[&ONLY],
+        analysis.conditions[&CONDITION],
         Err(ConditionFailure::AllSetAside {
             bundle: BundleKind::Identified
         })
@@ -152,19 +160,18 @@ fn a_bundle_of_which_only_models_set_aside_are_kept_has_no_result_and_says_so() 
 }
 
 #[test]
-fn a_physics_model_without_a_measuring_response_is_set_aside_too() {
+fn a_physics_model_that_lacks_an_on_axis_response_is_set_aside() {
     let mut value = with_short_measurement(None);
     let model = &mut value["conditions"][0]["physics_models"][3];
+    // Every response of output 0 becomes zero.
     for key in ["C", "D"] {
-        model[key][0]
-            .as_array_mut()
-            .unwrap()
-            .iter_mut()
-            .for_each(|entry| *entry = json!(0.0));
+        for entry in model[key][0].as_array_mut().unwrap() {
+            *entry = json!(0.0);
+        }
     }
     let name = model["name"].as_str().unwrap().to_owned();
-    let analysis = only(&value, &[]);
-    let found = analysis.condition(ONLY).unwrap();
+    let analysis = analysis_of(&value, &[]);
+    let found = analysis.condition(CONDITION).unwrap();
     assert!(
         found
             .cautions
@@ -174,7 +181,7 @@ fn a_physics_model_without_a_measuring_response_is_set_aside_too() {
     let ratios = &found.bundle_metrics.discontinuity.as_ref().unwrap().ratios;
     assert!(ratios[3].is_none() && ratios[0].is_some());
     let models = found.condition.bundle(BundleKind::Physics);
-    let first = ModelId::new(ONLY, BundleKind::Physics, &models[0].name);
+    let first = ModelId::new(CONDITION, BundleKind::Physics, &models[0].name);
     let explained = derivation(&analysis, &ExplainTarget::DiscontinuityRatio(first)).unwrap();
     let compared = models.len() - 1;
     assert_eq!(
@@ -194,8 +201,8 @@ fn a_physics_model_without_a_measuring_response_is_set_aside_too() {
         .clone();
     without.remove(3);
     assert_eq!(
-        only(&value, &[])
-            .condition(ONLY)
+        analysis_of(&value, &[])
+            .condition(CONDITION)
             .unwrap()
             .bundle_metrics
             .discontinuity
@@ -206,29 +213,38 @@ fn a_physics_model_without_a_measuring_response_is_set_aside_too() {
     );
 }
 
+/// Returns a matrix of `two_lags` from its diagonal and the entries above and below it.
+fn with_couplings([first, second]: [f64; 2], [upper, lower]: [f64; 2]) -> [[f64; 2]; 2] {
+    [[first, upper], [lower, second]]
+}
+
 #[test]
-fn residues_of_differencing_count_as_zero_and_are_named() {
-    let zeros = only(
+fn residues_of_numerical_linearisation_count_as_zero_and_are_reported() {
+    let zeros = analysis_of(
         &two_lags([[1.0, 0.0], [0.0, 1.0]], [[1.2, 0.0], [0.0, 0.9]]),
         &[],
     );
+    // Off-axis gains that are residues in the physics model, in the identified model, and in both.
     for (physics, identified) in [
         ([1e-17, 1e-9], [1e-3, 0.5]),
         ([0.1, 0.1], [1e-17, 3e-8]),
         ([1e-17, 1e-16], [0.0, 1e-13]),
     ] {
-        let of = |diagonal: [f64; 2], [upper, lower]: [f64; 2]| {
-            [[diagonal[0], upper], [lower, diagonal[1]]]
-        };
-        let value = two_lags(of([1.0, 1.0], physics), of([1.2, 0.9], identified));
-        let analysis = only(&value, &[]);
-        let found = analysis.condition(ONLY).unwrap();
+        let value = two_lags(
+            with_couplings([1.0, 1.0], physics),
+            with_couplings([1.2, 0.9], identified),
+        );
+        let analysis = analysis_of(&value, &[]);
+        let found = analysis.condition(CONDITION).unwrap();
         assert_eq!(
             found.comparison.delta,
-            zeros.condition(ONLY).unwrap().comparison.delta
+            zeros.condition(CONDITION).unwrap().comparison.delta
         );
-        assert_eq!(found.correction, zeros.condition(ONLY).unwrap().correction);
-        let named = words(&analysis, found).concat();
+        assert_eq!(
+            found.correction,
+            zeros.condition(CONDITION).unwrap().correction
+        );
+        let named = caution_texts(&analysis, found).concat();
         assert!(
             found.cautions.iter().any(|caution| matches!(
                 caution,
@@ -238,17 +254,17 @@ fn residues_of_differencing_count_as_zero_and_are_named() {
             "{:?}",
             found.cautions
         );
-        let written = corrections(&analysis, "", &BTreeSet::from([ONLY]));
+        let written = corrections(&analysis, "", &BTreeSet::from([CONDITION]));
         assert_eq!(texts(&written["conditions"][0]["cautions"]).concat(), named);
     }
 }
 
 #[test]
-fn a_response_that_is_numerically_nothing_is_not_held_for_that_reason() {
+fn a_numerically_zero_response_is_not_held_and_the_reason_is_reported() {
     let value = two_lags([[1.0, 1e-17], [0.0, 1.0]], [[1.2, 0.1], [0.0, 0.9]]);
     let pair = Pair::new(0, 1);
-    let analysis = only(&value, &[Edit::Hold(pair, true)]);
-    let found = analysis.condition(ONLY).unwrap();
+    let analysis = analysis_of(&value, &[Edit::Hold(pair, true)]);
+    let found = analysis.condition(CONDITION).unwrap();
     assert!(!found.held()[pair]);
     let why = Undefined::NumericallyZero(BundleKind::Physics);
     assert!(
@@ -264,11 +280,12 @@ fn a_response_that_is_numerically_nothing_is_not_held_for_that_reason() {
 }
 
 #[test]
-fn an_unusual_gain_is_fitted_with_a_caution_that_ends_when_it_is_ignored() {
+fn an_unusual_gain_is_fitted_with_a_caution_until_its_response_is_ignored() {
+    // The off-axis gain of the identified model is 20 times that of the physics model.
     let value = two_lags([[1.0, 0.01], [0.0, 1.0]], [[1.2, 0.2], [0.0, 0.9]]);
     let pair = Pair::new(0, 1);
-    let analysis = only(&value, &[]);
-    let found = analysis.condition(ONLY).unwrap();
+    let analysis = analysis_of(&value, &[]);
+    let found = analysis.condition(CONDITION).unwrap();
     assert!((found.comparison.delta.gain[pair].unwrap() - 20.0).abs() < 1e-9);
     let offered: Vec<Pair> = found
         .cautions
@@ -280,10 +297,10 @@ fn an_unusual_gain_is_fitted_with_a_caution_that_ends_when_it_is_ignored() {
         matches!(caution, Caution::UnusualGain { gain, .. } if (gain - 20.0).abs() < 1e-9)
     });
     assert!(is_reported, "{:?}", found.cautions);
-    let ignored = only(&value, &[Edit::Fit(pair, false)]);
+    let ignored = analysis_of(&value, &[Edit::Fit(pair, false)]);
     assert_eq!(
         ignored
-            .condition(ONLY)
+            .condition(CONDITION)
             .unwrap()
             .cautions
             .iter()
@@ -294,10 +311,10 @@ fn an_unusual_gain_is_fitted_with_a_caution_that_ends_when_it_is_ignored() {
 }
 
 #[test]
-fn a_ratio_that_the_objective_cannot_square_leaves_its_response_out_and_the_others_in() {
+fn an_extreme_gain_ratio_leaves_out_its_own_response_only() {
     let value = two_lags([[1.0, 1e-3], [1e-3, 1e-60]], [[1.2, 1e-3], [1e-3, 0.9]]);
-    let analysis = only(&value, &[]);
-    let found = analysis.condition(ONLY).unwrap();
+    let analysis = analysis_of(&value, &[]);
+    let found = analysis.condition(CONDITION).unwrap();
     let gain = &found.comparison.delta.gain;
     assert_eq!(
         (gain[Pair::new(1, 1)], gain[Pair::new(0, 0)].is_some()),
@@ -307,11 +324,12 @@ fn a_ratio_that_the_objective_cannot_square_leaves_its_response_out_and_the_othe
         found.comparison.undefined[Pair::new(1, 1)],
         Some(Undefined::NumericallyZero(BundleKind::Physics))
     );
-    let alone = only(
+    // A gain of 1e60 is beyond the limit of 1000 dB, which is 1e50.
+    let alone = analysis_of(
         &two_lags([[1e-30, 0.0], [0.0, 1.0]], [[1e30, 0.0], [0.0, 0.9]]),
         &[],
     );
-    let found = &alone.condition(ONLY).unwrap().comparison;
+    let found = &alone.condition(CONDITION).unwrap().comparison;
     assert_eq!(
         found.undefined[Pair::new(0, 0)],
         Some(Undefined::GainOutOfRange(60))
@@ -319,15 +337,15 @@ fn a_ratio_that_the_objective_cannot_square_leaves_its_response_out_and_the_othe
     assert!(found.delta.gain[Pair::new(1, 1)].is_some());
 }
 
-/// Returns the cautions that `check` reports for a file with a single condition.
-fn checked(value: &Value) -> Vec<Caution> {
+/// Returns the cautions about the models of a file that the `check` command reports.
+fn cautions_of(value: &Value) -> Vec<Caution> {
     let cautions =
         cautions_of_models(&Study::new(dataset(value)), &Execution::sequential()).unwrap();
     cautions.into_iter().map(|(_, caution)| caution).collect()
 }
 
 #[test]
-fn a_gain_beyond_what_is_computed_with_is_called_that() {
+fn a_gain_out_of_range_is_reported_with_its_power_of_ten() {
     for (power, physics, identified) in [
         (74, 1.0, 1e74),
         (-74, 1e74, 1.0),
@@ -339,8 +357,8 @@ fn a_gain_beyond_what_is_computed_with_is_called_that() {
             [[identified, 0.0], [0.0, 0.9]],
         );
         let pair = Pair::new(0, 0);
-        let analysis = only(&value, &[]);
-        let found = analysis.condition(ONLY).unwrap();
+        let analysis = analysis_of(&value, &[]);
+        let found = analysis.condition(CONDITION).unwrap();
         let why = found.comparison.undefined[pair].unwrap();
         assert_eq!(
             (why, why.code()),
@@ -355,11 +373,11 @@ fn a_gain_beyond_what_is_computed_with_is_called_that() {
             }],
         };
         assert!(found.cautions.contains(&expected), "{:?}", found.cautions);
-        assert_eq!(checked(&value), [expected]);
+        assert_eq!(cautions_of(&value), [expected]);
     }
     // If no gain of the analysis is within range, the condition fails and the message states all
-    // gains. Gains of 1e-24 and 1e24 are still within range.
-    let alone = only(
+    // gains.
+    let alone = analysis_of(
         &two_lags([[1e74, 0.0], [0.0, 1e74]], [[1.0, 0.0], [0.0, 1.0]]),
         &[],
     );
@@ -367,7 +385,7 @@ fn a_gain_beyond_what_is_computed_with_is_called_that() {
         pair: Pair::new(index, index),
         power_of_ten: -74,
     };
-    let failure = alone.conditions[&ONLY].as_ref().unwrap_err();
+    let failure = alone.conditions[&CONDITION].as_ref().unwrap_err();
     let ConditionFailure::NothingToCompare { cautions, .. } = failure else {
         panic!("{failure:?}")
     };
@@ -379,8 +397,9 @@ fn a_gain_beyond_what_is_computed_with_is_called_that() {
         )),
         "{cautions:?}"
     );
+    // A gain of 1e48, 960 dB, is within range.
     assert!(
-        checked(&two_lags(
+        cautions_of(&two_lags(
             [[1e-24, 0.0], [0.0, 1.0]],
             [[1e24, 0.0], [0.0, 0.9]]
         ))
@@ -388,24 +407,26 @@ fn a_gain_beyond_what_is_computed_with_is_called_that() {
     );
 }
 
-/// Returns two lags whose identified model is a response measured from 0.3 to 20 rad/s; the
-/// responses in `zeros` (\[output, input\]) have only zeros as values.
-fn with_zeros_measured(zeros: &[[usize; 2]], band: [f64; 2]) -> Value {
+/// Returns two lags whose identified model is a response measured from 0.3 to 20 rad/s, for
+/// analysis in `band` \[rad/s\]; the responses in `zeros` (\[output, input\]) have only zeros as
+/// values.
+fn two_lags_measured(zeros: &[[usize; 2]], band: [f64; 2]) -> Value {
     let mut value = two_lags([[1.0, 0.1], [0.1, 1.0]], [[1.2, 0.1], [0.1, 0.9]]);
     let omega: Vec<f64> = (0..50)
         .map(|k| 0.3 * (20.0_f64 / 0.3).powf(f64::from(k) / 49.0))
         .collect();
-    let part = |of: fn(f64, f64) -> f64| -> Value {
+    let part = |part: fn(f64, f64) -> f64| -> Value {
         let curve = |output: usize, input: usize| -> Vec<f64> {
             let is_zero = zeros.contains(&[output, input]);
             let lag = [1.0, 3.0][input];
             omega
                 .iter()
-                .map(|&omega| if is_zero { 0.0 } else { of(lag, omega) })
+                .map(|&omega| if is_zero { 0.0 } else { part(lag, omega) })
                 .collect()
         };
         json!([[curve(0, 0), curve(0, 1)], [curve(1, 0), curve(1, 1)]])
     };
+    // Real and imaginary part of 1 / (lag + j omega).
     let re = part(|lag, omega| lag / (lag * lag + omega * omega));
     let im = part(|lag, omega| -omega / (lag * lag + omega * omega));
     value["conditions"][0]["identified_models"][0] = json!({"name": "measured", "frequency_response": {"omega_rad_s": omega, "re": re, "im": im}});
@@ -414,7 +435,7 @@ fn with_zeros_measured(zeros: &[[usize; 2]], band: [f64; 2]) -> Value {
 }
 
 #[test]
-fn a_response_of_zeros_is_missing_and_the_measured_frequencies_are_not_blamed() {
+fn a_response_measured_as_zero_is_reported_as_missing_not_as_measured_too_short() {
     let model = BundleModel {
         bundle: BundleKind::Identified,
         name: "measured".to_owned(),
@@ -425,8 +446,8 @@ fn a_response_of_zeros_is_missing_and_the_measured_frequencies_are_not_blamed() 
         ([0.5, 12.0], vec![]),
         ([0.5, 30.0], vec![Pair::new(0, 0), Pair::new(1, 0)]),
     ] {
-        let value = with_zeros_measured(&[[0, 1], [1, 1]], band);
-        let mut cautions = checked(&value);
+        let value = two_lags_measured(&[[0, 1], [1, 1]], band);
+        let mut cautions = cautions_of(&value);
         let missing = Caution::MissingResponses {
             model: model.clone(),
             responses: responses.clone(),
@@ -444,9 +465,9 @@ fn a_response_of_zeros_is_missing_and_the_measured_frequencies_are_not_blamed() 
             .collect();
         assert_eq!(beyond, not_finite, "{band:?}");
     }
-    let value = with_zeros_measured(&[[0, 1], [1, 1]], [0.5, 12.0]);
-    let analysis = only(&value, &[]);
-    let found = analysis.condition(ONLY).unwrap();
+    let value = two_lags_measured(&[[0, 1], [1, 1]], [0.5, 12.0]);
+    let analysis = analysis_of(&value, &[]);
+    let found = analysis.condition(CONDITION).unwrap();
     // A response that is measured as zero throughout counts as not measured.
     for &pair in &responses {
         assert_eq!(
@@ -468,10 +489,10 @@ fn a_response_of_zeros_is_missing_and_the_measured_frequencies_are_not_blamed() 
 }
 
 #[test]
-fn a_model_set_aside_for_zeros_is_not_told_to_be_measured_too_short() {
-    let mut value = with_zeros_measured(&[[1, 1]], [0.5, 12.0]);
+fn a_model_set_aside_for_a_zero_response_is_not_reported_as_measured_too_short() {
+    let mut value = two_lags_measured(&[[1, 1]], [0.5, 12.0]);
     let whole =
-        with_zeros_measured(&[], [0.5, 12.0])["conditions"][0]["identified_models"][0].clone();
+        two_lags_measured(&[], [0.5, 12.0])["conditions"][0]["identified_models"][0].clone();
     value["conditions"][0]["identified_models"]
         .as_array_mut()
         .unwrap()
@@ -489,14 +510,20 @@ fn a_model_set_aside_for_zeros_is_not_told_to_be_measured_too_short() {
         why: None,
         pinned: false,
     };
-    assert_eq!(checked(&value), [expected]);
+    assert_eq!(cautions_of(&value), [expected]);
+}
+
+/// Returns the gains of the inputs, then those of the outputs.
+fn channel_gains(correction: &ChannelCorrection) -> Vec<f64> {
+    [&correction.input_gains[..], &correction.output_gains[..]].concat()
 }
 
 #[test]
-fn airspeeds_a_hair_apart_are_one_point_of_the_schedule() {
-    let analysis = only(&json(NEAR), &[]);
+fn airspeeds_within_the_tolerance_are_one_point_of_the_schedule() {
+    let analysis = analysis_of(&json(NEAR_AIRSPEEDS), &[]);
     let schedule = analysis.schedule.as_ref().unwrap();
     assert_eq!(schedule.airspeeds.clusters, [vec![0, 1], vec![2]]);
+    // The default degree is 2; two points determine a line.
     let lowered = ScheduleCaution::DegreeLowered {
         asked: 2,
         clusters: 2,
@@ -512,43 +539,42 @@ fn airspeeds_a_hair_apart_are_one_point_of_the_schedule() {
         (ConditionId(1), "nominal")
     );
     assert!(cost.scheduled > 2.0 * cost.own, "{cost:?}");
-    let net_delays_s = analysis.conditions.values().map(|result| {
+    let mut net_delays_s = Vec::new();
+    for result in analysis.conditions.values() {
         let correction = &result.as_ref().unwrap().correction;
-        [0, 1].map(|place| correction.net_delay_s(Pair::new(place, place)))
-    });
-    let net_delays_s: Vec<[f64; 2]> = net_delays_s.collect();
+        net_delays_s.push([0, 1].map(|place| correction.net_delay_s(Pair::new(place, place))));
+    }
     let at = schedule.at(60.0);
     for place in [0, 1] {
         let [first_s, second_s, third_s] = [0, 1, 2].map(|id| net_delays_s[id][place]);
-        assert!(first_s.max(third_s) < 1e-9 && second_s > 0.05);
+        assert!(first_s.max(third_s) < 1e-9, "{first_s}, {third_s}");
+        assert!(second_s > 0.05, "{second_s}");
         let scheduled_s = at.net_delay_s(Pair::new(place, place));
         assert!(
             (scheduled_s - 0.5 * second_s).abs() < 1e-6,
-            "{scheduled_s} of {second_s}"
+            "scheduled {scheduled_s}, which is not half of {second_s}"
         );
     }
     let never = setting_table::SCHEDULE_DELAYS.to(DelayScheduling::Never);
-    let without = only(&json(NEAR), &[never]).schedule.unwrap();
+    let without = analysis_of(&json(NEAR_AIRSPEEDS), &[never])
+        .schedule
+        .unwrap();
     assert!(!without.has_delays() && without.cautions[0] == lowered);
-    let gains = |of: &gdcm_method::correction::ChannelCorrection| {
-        [of.input_gains.clone(), of.output_gains.clone()].concat()
-    };
-    let own = analysis
+    // From 60 to 120 kt, scheduled gains stay within 1 % of the range of the conditions' own gains.
+    let own: Vec<Vec<f64>> = analysis
         .conditions
         .values()
-        .map(|result| gains(&result.as_ref().unwrap().correction));
-    let own: Vec<Vec<f64>> = own.collect();
+        .map(|result| channel_gains(&result.as_ref().unwrap().correction))
+        .collect();
     for step in 0..=60 {
-        for (channel, gain) in gains(&schedule.at(60.0 + f64::from(step)))
-            .into_iter()
-            .enumerate()
-        {
+        let scheduled = channel_gains(&schedule.at(60.0 + f64::from(step)));
+        for (channel, gain) in scheduled.into_iter().enumerate() {
             let all = own.iter().map(|gains| gains[channel]);
             let least = all.clone().fold(f64::INFINITY, f64::min);
             let most = all.fold(0.0, f64::max);
             assert!(
                 (0.99 * least..=1.01 * most).contains(&gain),
-                "channel {channel}: {gain}"
+                "channel {channel}: {gain} is not between {least} and {most}"
             );
         }
     }
@@ -576,9 +602,11 @@ fn airspeeds_a_hair_apart_are_one_point_of_the_schedule() {
 }
 
 #[test]
-fn a_schedule_that_overshoots_says_where_and_the_assessment_claims_nothing_between() {
-    let wild = setting_table::AIRSPEED_TOLERANCE.to(0.0);
-    let analysis = only(&json(NEAR), std::slice::from_ref(&wild));
+fn an_overshooting_polynomial_reports_where_and_a_table_does_not_overshoot() {
+    // Without a tolerance, the parabola passes through two points that are 1e-6 kt apart and differ
+    // in gain.
+    let no_tolerance = setting_table::AIRSPEED_TOLERANCE.to(0.0);
+    let analysis = analysis_of(&json(NEAR_AIRSPEEDS), std::slice::from_ref(&no_tolerance));
     let schedule = analysis.schedule.as_ref().unwrap();
     assert!(schedule.interpolation_fails());
     let ScheduleCaution::Overshoot { between_kt, .. } = schedule.cautions[0] else {
@@ -587,7 +615,7 @@ fn a_schedule_that_overshoots_says_where_and_the_assessment_claims_nothing_betwe
     assert_eq!(between_kt.map(|kt| (10.0 * kt).round()), [600.0, 1200.0]);
     let table = setting_table::SCHEDULE.to(ScheduleKind::Table);
     assert!(
-        !only(&json(NEAR), &[wild, table])
+        !analysis_of(&json(NEAR_AIRSPEEDS), &[no_tolerance, table])
             .schedule
             .unwrap()
             .interpolation_fails()
@@ -595,12 +623,12 @@ fn a_schedule_that_overshoots_says_where_and_the_assessment_claims_nothing_betwe
 }
 
 #[test]
-fn a_pole_on_the_grid_is_named() {
+fn a_pole_at_a_grid_frequency_is_reported_as_the_cause_of_failure() {
     let mut value = two_lags([[1.0, 0.2], [0.3, 1.0]], [[1.2, 0.2], [0.3, 0.9]]);
     // An undamped pole pair at the lowest frequency of the band.
     value["conditions"][0]["physics_models"][0]["A"] = json!([[0.0, 0.5], [-0.5, 0.0]]);
-    let analysis = only(&value, &[]);
-    let failure = analysis.conditions[&ONLY].as_ref().unwrap_err();
+    let analysis = analysis_of(&value, &[]);
+    let failure = analysis.conditions[&CONDITION].as_ref().unwrap_err();
     let ConditionFailure::NothingToCompare { cautions, .. } = failure else {
         panic!("{failure:?}")
     };
@@ -617,11 +645,11 @@ fn a_pole_on_the_grid_is_named() {
 }
 
 #[test]
-fn a_vanishing_alpha_gives_the_products_of_none_and_scattered_gains_are_no_unit() {
+fn a_tiny_alpha_gives_the_net_gains_of_zero_alpha_and_only_close_gains_suggest_a_unit() {
     let value = json(SIX_BY_FOUR);
-    let products = |alpha: f64| {
-        let analysis = only(&value, &[setting_table::ALPHA_GAIN.to(alpha)]);
-        let result = analysis.condition(ONLY).unwrap();
+    let net_gains = |alpha: f64| {
+        let analysis = analysis_of(&value, &[setting_table::ALPHA_GAIN.to(alpha)]);
+        let result = analysis.condition(CONDITION).unwrap();
         let net = result.cost.map(|pair, _| result.correction.net_gain(pair));
         // The gains of O5, 15.1 and 5.6, are near enough to each other for a unit factor; the gains
         // of the other channels differ by a factor of ten.
@@ -631,7 +659,10 @@ fn a_vanishing_alpha_gives_the_products_of_none_and_scattered_gains_are_no_unit(
     };
     // The effect of the term with weight alpha is of the order of alpha; the tolerance of the
     // solver is 1e-8.
-    for (tiny, none) in products(1e-12).into_iter().zip(products(0.0)) {
-        assert!((tiny / none).ln().abs() < 1e-6, "{tiny} {none}");
+    for (with_tiny, with_zero) in net_gains(1e-12).into_iter().zip(net_gains(0.0)) {
+        assert!(
+            (with_tiny / with_zero).ln().abs() < 1e-6,
+            "{with_tiny} with alpha = 1e-12, {with_zero} with alpha = 0"
+        );
     }
 }

@@ -6,52 +6,12 @@ use gdcm_study::ConditionAnalysis;
 
 use super::*;
 
+/// Results of the independent implementation, with its suggested outliers rejected.
 const REFERENCE: &str = include_str!("../../../../../tests/data/reference/example-analysis.json");
-
-/// Smallest magnitudes that matter, by kind of result: tolerances are relative to these for results
-/// near zero.
-mod scale {
-    /// Gains, ratios and their logarithms have the order of magnitude 1.
-    pub const GAIN: f64 = 1.0;
-    /// One millisecond: a tenth of the smallest delay that matters to an engineer.
-    pub const DELAY_S: f64 = 1e-3;
-    /// A J of 1 is a fiftieth of the value at which responses are almost indistinguishable.
-    pub const COST: f64 = 1.0;
-    /// The objective of eq. (11) is a sum of squared delays \[s^2\].
-    pub const DELAY_OBJECTIVE: f64 = 1e-4;
-    /// Airspeeds \[kt\].
-    pub const AIRSPEED_KT: f64 = 1.0;
-}
-
-/// Asserts agreement within 1e-6 of the reference value, or of `scale` if the reference is smaller.
-/// The reference values themselves are accurate to about 1e-9: both programs take medians and
-/// quantiles of the same 200 values.
-#[track_caller]
-fn assert_close(what: &str, found: f64, reference: f64, scale: f64) {
-    let allowed = 1e-6 * reference.abs().max(scale);
-    assert!(
-        (found - reference).abs() <= allowed,
-        "{what}: found {found}, reference {reference}"
-    );
-}
-
-#[track_caller]
-fn assert_all_close(what: &str, found: &[f64], reference: &Value, scale: f64) {
-    let reference = numbers(reference);
-    assert_eq!(found.len(), reference.len(), "{what}");
-    for (index, (found, reference)) in found.iter().zip(reference).enumerate() {
-        assert_close(
-            &format!("{what}, entry {}", index + 1),
-            *found,
-            reference,
-            scale,
-        );
-    }
-}
 
 #[track_caller]
 fn assert_table_close<T>(
-    what: &str,
+    quantity: &str,
     found: &PairTable<Option<T>>,
     figure: impl Fn(&T) -> f64,
     reference: &Value,
@@ -60,7 +20,7 @@ fn assert_table_close<T>(
     for (pair, found) in found.iter() {
         let reference = number(&reference[pair.output][pair.input]);
         assert_close(
-            &format!("{what} of {pair:?}"),
+            &format!("{quantity} of {pair:?}"),
             figure(found.as_ref().unwrap()),
             reference,
             scale,
@@ -89,7 +49,7 @@ fn each_condition(mut check: impl FnMut(&str, &ConditionAnalysis, &Value)) {
 }
 
 #[test]
-fn representatives_and_suggestions_of_the_example_are_exactly_those_of_the_independent_analysis() {
+fn representatives_and_suggested_outliers_of_the_example_agree_exactly() {
     each_condition(|at, found, expected| {
         assert_eq!(
             found.representative_name(BundleKind::Physics),
@@ -375,10 +335,11 @@ fn keys(value: &Value) -> Vec<&str> {
 }
 
 #[test]
-fn what_is_written_of_the_example_has_the_fields_that_it_always_had_and_the_tolerance() {
+fn the_corrections_file_of_the_example_keeps_its_fields() {
     let analysis = &*EXAMPLE_WITH_SUGGESTIONS_REJECTED;
     let value = corrections(analysis, "", &analysis.conditions.keys().copied().collect());
     let mut settings = keys(&value["settings"]);
+    // Fields that were added after the first version of the format.
     let later = [
         "agreement_db",
         "delay_from",
@@ -405,6 +366,7 @@ fn what_is_written_of_the_example_has_the_fields_that_it_always_had_and_the_tole
             "schedule",
         ]
     );
+    // Largest mismatch \[dB\] around a loop of constrained gains that counts as consistent.
     assert_eq!(number(&value["settings"]["agreement_db"]), 0.05);
     assert_eq!(
         keys(&value["conditions"][0]),
@@ -433,7 +395,7 @@ fn what_is_written_of_the_example_has_the_fields_that_it_always_had_and_the_tole
             "set_aside",
             "suggested_outliers",
         ],
-        "without reasons there is no word of them"
+        "rejected models have no reasons, so that the field for reasons is absent"
     );
     assert_eq!(
         keys(&value["schedule"]["table"][0]),

@@ -4,12 +4,9 @@
 use std::sync::Arc;
 
 use gdcm_method::correction::GainBounds;
-use gdcm_model::dataset::condition::FlightState;
-use gdcm_model::dataset::dataset::DatasetHeader;
-use gdcm_model::dataset::measured_response::MeasuredResponse;
-use gdcm_model::dataset::model::Origin;
-use gdcm_model::dataset::{Band, Channel, Condition, Dataset, Model, ModelId};
+use gdcm_model::dataset::{Band, Dataset, ModelId};
 
+use super::measured_flight::{dataset_with_flight, flight_state, measured_response};
 use super::responses::model_of;
 use super::*;
 use crate::evidence;
@@ -36,58 +33,14 @@ fn dataset_of(file: &str, delay_s: f64) -> Dataset {
             .map(|(value, omega)| value * lag(omega))
             .collect::<Vec<_>>()
     });
-    let part = |of: fn(&Complex<f64>) -> f64| {
-        flight.map(|_, values| values.iter().map(of).collect::<Vec<f64>>())
-    };
-    let measured = MeasuredResponse::new(
-        grid.omega().to_vec(),
-        &part(|value| value.re),
-        &part(|value| value.im),
-        None,
-    )
-    .unwrap();
-    let model = |name: &str, origin, dynamics| Model::new(name, origin, dynamics);
-    let physics = model("nominal", Origin::Nominal { perturbation: None }, dynamics);
-    let identified = model(
-        "flight",
-        Origin::Identified {
-            method: None,
-            order: None,
-        },
-        Dynamics::Measured(measured),
-    );
-    let flight_state = FlightState {
-        id: ConditionId(1),
-        name: file.to_owned(),
-        airspeed_kt: 0.0,
-        altitude: None,
-        altitude_ft: None,
-        weight: None,
-        mass_kg: None,
-    };
-    let channels = |letter: &str, count| {
-        (0..count)
-            .map(|index| Channel::new(format!("{letter}{index}"), ""))
-            .collect()
-    };
-    let header = DatasetHeader {
-        name: file.to_owned(),
-        description: String::new(),
-        inputs: channels("u", inputs),
-        outputs: channels("y", outputs),
-        on_axis: PairTable::filled(outputs, inputs, false),
-        band: Band::new(0.5, 12.0).unwrap(),
-        parameters: Vec::new(),
-    };
-    Dataset::new(
-        header,
-        vec![Condition::new(flight_state, vec![physics], vec![identified]).unwrap()],
-    )
-    .unwrap()
+    let measured = measured_response(&grid, &flight, None);
+    let on_axis = PairTable::filled(outputs, inputs, false);
+    dataset_with_flight(flight_state(file, 0.0), dynamics, measured, on_axis)
 }
 
 #[test]
 fn gains_and_delays_put_into_published_helicopters_are_found_again() {
+    // Outputs and inputs of each published model.
     let shapes = [
         ("compleib_HE2_AH64_130kt.json", (2, 2)),
         ("yamaha_R50_hover_mettler.json", (13, 4)),
@@ -117,19 +70,16 @@ fn gains_and_delays_put_into_published_helicopters_are_found_again() {
         let analysis = Engine::default().analyze(&study, &Unobserved).unwrap();
         let result = analysis.condition(ConditionId(1)).unwrap();
         let mut defined = 0;
-        for (pair, wanted) in result
-            .comparison
-            .delta
-            .gain
-            .iter()
-            .filter(|(_, wanted)| wanted.is_some())
-        {
+        for (pair, delta_gain) in result.comparison.delta.gain.iter() {
+            let Some(delta_gain) = delta_gain else {
+                continue;
+            };
             defined += 1;
             let known = gain(pair.output) * gain(shape.0 + pair.input);
             // Interpolation between 3000 measured frequencies: the error is a few 1e-6 at lightly
             // damped peaks, and far less for the median.
             let deviations = [
-                wanted.unwrap() / known - 1.0,
+                delta_gain / known - 1.0,
                 result.correction.net_gain(pair) / known - 1.0,
                 result.correction.net_delay_s(pair) - 0.02,
             ];
@@ -140,7 +90,7 @@ fn gains_and_delays_put_into_published_helicopters_are_found_again() {
             }
             assert!(
                 result.cost[pair].unwrap().corrected.total() < 1e-4,
-                "{file} {pair:?}"
+                "{file} {pair:?}: J after the correction is not zero"
             );
         }
         assert!(defined >= 4, "{file}: {defined} responses are defined");
@@ -155,7 +105,7 @@ fn gains_and_delays_put_into_published_helicopters_are_found_again() {
 }
 
 #[test]
-fn a_band_beyond_the_measured_frequencies_leaves_no_result_and_says_why() {
+fn a_band_below_the_measured_frequencies_gives_no_result_and_states_the_reason() {
     let mut study = Study::new(Arc::new(dataset_of("compleib_HE2_AH64_130kt.json", 0.0)));
     study
         .apply(&setting_table::BAND.to(Band::new(0.1, 12.0).unwrap()))
@@ -164,9 +114,9 @@ fn a_band_beyond_the_measured_frequencies_leaves_no_result_and_says_why() {
     let failure = analysis.conditions[&ConditionId(1)].as_ref().unwrap_err();
     assert_eq!(failure.code(), "nothing-to-compare");
     assert!(analysis.schedule.is_err());
-    let kept = ModelId::new(ConditionId(1), BundleKind::Identified, "flight");
+    let only_model = ModelId::new(ConditionId(1), BundleKind::Identified, "flight");
     assert!(
-        study.apply(&Edit::Reject(kept)).is_err(),
-        "the only model of a bundle stays"
+        study.apply(&Edit::Reject(only_model)).is_err(),
+        "the only model of a bundle cannot be rejected"
     );
 }

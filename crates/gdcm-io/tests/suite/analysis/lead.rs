@@ -3,28 +3,26 @@
 
 use std::sync::Arc;
 
-use gdcm_method::correction::Channel as CorrectedChannel;
+use gdcm_method::correction::Channel;
 use gdcm_method::correction::lead_design::{LeadDesign, LeadSettings};
 use gdcm_method::schedule::ScheduleCaution;
 use gdcm_method::uncertainty::Scalar;
-use gdcm_model::dataset::condition::FlightState;
-use gdcm_model::dataset::dataset::DatasetHeader;
-use gdcm_model::dataset::measured_response::MeasuredResponse;
-use gdcm_model::dataset::model::Origin;
-use gdcm_model::dataset::{Band, Channel, Condition, Dataset, Model, ModelId};
+use gdcm_model::dataset::{Band, Dataset, ModelId};
 use gdcm_model::response::LeadOrder;
 use gdcm_study::decisions::settings::DelayFrom;
 use gdcm_study::results::assessment_table::{AssessedModel, AssessmentChoice};
 use gdcm_study::results::condition_remarks::condition_remarks;
 use gdcm_study::results::remark::Remark;
-use gdcm_study::{AssessedCorrection, AssessmentTable, PhaseCorrection};
+use gdcm_study::{AssessedCorrection, AssessmentTable, ConditionAnalysis, PhaseCorrection};
 use gdcm_words::leads::lead_words;
 
+use super::measured_flight::{dataset_with_flight, flight_state, measured_response};
 use super::*;
 
+/// Results of an independent implementation: `example`, `recovers` with its `plant`.
 const REFERENCE: &str = include_str!("../../../../../tests/data/reference/lead.json");
 
-/// Analysis of the example with leads, without rejected models.
+/// Analysis of the example with leads; no model is rejected.
 static EXAMPLE_WITH_LEADS: LazyLock<Analysis> =
     LazyLock::new(|| analyze(&mut Engine::default(), &with_leads()));
 
@@ -36,25 +34,8 @@ fn with_leads() -> Study {
     study
 }
 
-/// Asserts agreement within 1e-6 of the reference value, or of `scale` if the reference is smaller.
-#[track_caller]
-fn assert_close(what: &str, found: f64, reference: f64, scale: f64) {
-    let allowed = 1e-6 * reference.abs().max(scale);
-    assert!(
-        (found - reference).abs() <= allowed,
-        "{what}: found {found}, reference {reference}"
-    );
-}
-
-#[track_caller]
-fn assert_all_close(what: &str, found: &[f64], reference: &Value, scale: f64) {
-    for (found, reference) in found.iter().zip(numbers(reference)) {
-        assert_close(what, *found, reference, scale);
-    }
-}
-
 #[test]
-fn signed_delays_filters_and_gains_of_the_example_agree() {
+fn signed_delays_filters_and_gains_of_the_example_match_the_reference() {
     let reference = json(REFERENCE);
     for expected in list(&reference["example"]["conditions"]) {
         let id = ConditionId(expected["id"].as_i64().unwrap());
@@ -65,32 +46,32 @@ fn signed_delays_filters_and_gains_of_the_example_agree() {
                 &at,
                 delay_s.unwrap(),
                 number(&expected["D_s"][pair.output][pair.input]),
-                1e-3,
+                scale::DELAY_S,
             );
             assert_close(
                 &at,
                 found.delta_gain(pair).unwrap(),
                 number(&expected["G"][pair.output][pair.input]),
-                1.0,
+                scale::GAIN,
             );
         }
         assert_close(
             &at,
             found.delay_problem.bounds.lower,
             number(&expected["lower_s"]),
-            1e-3,
+            scale::DELAY_S,
         );
         assert_close(
             &at,
             found.delay_upper_s(),
             number(&expected["upper_s"]),
-            1e-3,
+            scale::DELAY_S,
         );
         assert_close(
             &at,
             found.delays.objective,
             number(&expected["objective"]),
-            1e-4,
+            scale::DELAY_OBJECTIVE,
         );
         assert_eq!(
             found.delays.matched,
@@ -98,32 +79,57 @@ fn signed_delays_filters_and_gains_of_the_example_agree() {
             "{at}"
         );
         let leads = found.correction.leads.as_ref().unwrap();
-        assert_all_close(&at, &leads.taus_s.outputs, &expected["tau_out_s"], 1e-3);
-        assert_all_close(&at, &leads.taus_s.inputs, &expected["tau_in_s"], 1e-3);
+        assert_all_close(
+            &at,
+            &leads.taus_s.outputs,
+            &expected["tau_out_s"],
+            scale::DELAY_S,
+        );
+        assert_all_close(
+            &at,
+            &leads.taus_s.inputs,
+            &expected["tau_in_s"],
+            scale::DELAY_S,
+        );
         let lead_s = leads
             .filters()
             .map(|_, filter| filter.map_or(0.0, |filter| filter.lead_s()));
-        assert_all_close(&at, &lead_s.inputs, &expected["lead_in_s"], 1e-3);
-        assert_all_close(&at, &lead_s.outputs, &expected["lead_out_s"], 1e-3);
+        assert_all_close(&at, &lead_s.inputs, &expected["lead_in_s"], scale::DELAY_S);
+        assert_all_close(
+            &at,
+            &lead_s.outputs,
+            &expected["lead_out_s"],
+            scale::DELAY_S,
+        );
         assert_all_close(
             &at,
             &[found.gain_bounds().lower, found.gain_bounds().upper],
             &expected["gain_bounds"],
-            1.0,
+            scale::GAIN,
         );
-        assert_all_close(&at, &found.correction.output_gains, &expected["k_out"], 1.0);
-        assert_all_close(&at, &found.correction.input_gains, &expected["k_in"], 1.0);
+        assert_all_close(
+            &at,
+            &found.correction.output_gains,
+            &expected["k_out"],
+            scale::GAIN,
+        );
+        assert_all_close(
+            &at,
+            &found.correction.input_gains,
+            &expected["k_in"],
+            scale::GAIN,
+        );
         assert_close(
             &at,
             found.gains.objective,
             number(&expected["gain_objective"]),
-            1.0,
+            scale::GAIN,
         );
     }
 }
 
 #[test]
-fn costs_of_the_example_with_leads_agree_for_each_condition_and_under_the_schedule() {
+fn costs_of_the_example_with_leads_match_the_reference() {
     let reference = json(REFERENCE);
     let choice = AssessmentChoice {
         model: AssessedModel::Representative,
@@ -132,28 +138,46 @@ fn costs_of_the_example_with_leads_agree_for_each_condition_and_under_the_schedu
     };
     let scheduled = AssessmentTable::assess(&EXAMPLE_WITH_LEADS, choice);
     let conditions = list(&reference["example"]["conditions"]).iter();
-    for (expected, under) in conditions.zip(list(&reference["example"]["scheduled"])) {
+    for (expected, under_schedule) in conditions.zip(list(&reference["example"]["scheduled"])) {
         let id = ConditionId(expected["id"].as_i64().unwrap());
         let own = &EXAMPLE_WITH_LEADS.condition(id).unwrap().cost;
         for (pair, change) in own.iter() {
             let at = format!("condition {id}, {pair:?}");
             let change = change.unwrap();
-            let of =
-                |name: &str, stage: usize| number(&expected[name][stage][pair.output][pair.input]);
-            assert_close(&at, change.uncorrected.magnitude, of("J_mag", 0), 1.0);
-            assert_close(&at, change.uncorrected.phase, of("J_phase", 0), 1.0);
-            assert_close(&at, change.corrected.magnitude, of("J_mag", 1), 1.0);
-            assert_close(&at, change.corrected.phase, of("J_phase", 1), 1.0);
+            let entry = |table: &Value| number(&table[pair.output][pair.input]);
+            // Stage 0 is before the correction, stage 1 after it.
+            let magnitude = &expected["J_mag"];
+            let phase = &expected["J_phase"];
+            assert_close(
+                &at,
+                change.uncorrected.magnitude,
+                entry(&magnitude[0]),
+                scale::COST,
+            );
+            assert_close(&at, change.uncorrected.phase, entry(&phase[0]), scale::COST);
+            assert_close(
+                &at,
+                change.corrected.magnitude,
+                entry(&magnitude[1]),
+                scale::COST,
+            );
+            assert_close(&at, change.corrected.phase, entry(&phase[1]), scale::COST);
             let change = scheduled.change(id, pair).unwrap();
-            let of = |name: &str| number(&under[name][pair.output][pair.input]);
-            assert_close(&at, change.corrected.magnitude, of("J_mag"), 1.0);
-            assert_close(&at, change.corrected.phase, of("J_phase"), 1.0);
+            let magnitude = &under_schedule["J_mag"];
+            let phase = &under_schedule["J_phase"];
+            assert_close(
+                &at,
+                change.corrected.magnitude,
+                entry(magnitude),
+                scale::COST,
+            );
+            assert_close(&at, change.corrected.phase, entry(phase), scale::COST);
         }
     }
 }
 
 #[test]
-fn the_schedule_of_the_example_holds_the_mean_signed_delay_of_each_channel() {
+fn the_schedule_has_the_mean_signed_delay_of_each_channel() {
     let reference = json(REFERENCE);
     let schedule = EXAMPLE_WITH_LEADS.schedule.as_ref().unwrap();
     let at = schedule.at(77.0);
@@ -162,19 +186,19 @@ fn the_schedule_of_the_example_holds_the_mean_signed_delay_of_each_channel() {
         "inputs",
         &leads.taus_s.inputs,
         &reference["example"]["schedule"]["tau_in_s"],
-        1e-3,
+        scale::DELAY_S,
     );
     assert_all_close(
         "outputs",
         &leads.taus_s.outputs,
         &reference["example"]["schedule"]["tau_out_s"],
-        1e-3,
+        scale::DELAY_S,
     );
     assert!(
         at.input_delays_s.iter().all(|delay_s| *delay_s == 0.0),
-        "all inputs want lead"
+        "all inputs need lead, so none has a delay"
     );
-    // M15.6: in condition 4, NX requires a delay of 69 ms.
+    // M15.6: in condition 4, NX needs a delay of 69 ms; elsewhere it needs a lead of 17 ms.
     let nx = output_named("NX");
     let apart = schedule.cautions.iter().find_map(|caution| match caution {
         ScheduleCaution::SignedDelayApart {
@@ -189,14 +213,14 @@ fn the_schedule_of_the_example_holds_the_mean_signed_delay_of_each_channel() {
     assert_eq!(apart_ms, [69.0, -17.0]);
 }
 
-fn output_named(name: &str) -> CorrectedChannel {
+fn output_named(name: &str) -> Channel {
     let outputs = EXAMPLE_WITH_LEADS.study.dataset.outputs();
     let index = outputs.iter().position(|output| output.name == name);
-    CorrectedChannel::Output(index.unwrap())
+    Channel::Output(index.unwrap())
 }
 
 #[test]
-fn gains_alone_are_those_of_delays_and_every_delay_is_none() {
+fn without_phase_correction_the_gains_are_those_with_delays_and_all_delays_are_zero() {
     let mut study = study_of_example();
     let mut engine = Engine::default();
     let delay = analyze(&mut engine, &study);
@@ -242,7 +266,7 @@ fn gains_alone_are_those_of_delays_and_every_delay_is_none() {
 }
 
 #[test]
-fn delays_of_the_band_are_fitted_to_the_line_through_the_phase() {
+fn delays_from_the_band_are_fitted_to_the_slope_of_the_phase() {
     let mut study = study_of_example();
     study
         .apply(&setting_table::DELAY_FROM.to(DelayFrom::Band))
@@ -259,37 +283,44 @@ fn delays_of_the_band_are_fitted_to_the_line_through_the_phase() {
 }
 
 #[test]
-fn leads_that_match_are_remarked_with_the_lead_that_all_need() {
+fn matched_leads_are_reported_with_the_lead_common_to_all_responses() {
     let result = EXAMPLE_WITH_LEADS.condition(ConditionId(1)).unwrap();
     let study = &EXAMPLE_WITH_LEADS.study;
-    let said = condition_remarks(study, result, None);
+    let remarks = condition_remarks(study, result, None);
     assert!(
-        said.iter()
+        remarks
+            .iter()
             .any(|remark| matches!(remark, Remark::CommonLead { lead_s } if *lead_s > 0.0)),
-        "{said:?}"
+        "{remarks:?}"
     );
-    assert!(said.contains(&Remark::LeadsMatched { held: 5 }), "{said:?}");
+    assert!(
+        remarks.contains(&Remark::LeadsMatched { held: 5 }),
+        "{remarks:?}"
+    );
 }
 
 #[test]
-fn where_all_held_responses_want_lead_the_result_offers_it_with_what_it_buys() {
+fn leads_are_offered_with_their_benefit_if_all_held_responses_need_lead() {
     let study = study_of_example();
     let analysis = analyze(&mut Engine::default(), &study);
     let result = analysis.condition(ConditionId(1)).unwrap();
     let offer = result.offer.unwrap();
-    let held = || result.held().marked();
-    let mean = |found: &gdcm_study::ConditionAnalysis| {
-        held()
-            .map(|pair| found.cost[pair].unwrap().corrected.total())
-            .sum::<f64>()
-            / held().count() as f64
+    let held: Vec<Pair> = result.held().marked().collect();
+    let mean_cost = |found: &ConditionAnalysis| {
+        let costs = held
+            .iter()
+            .map(|pair| found.cost[*pair].unwrap().corrected.total());
+        costs.sum::<f64>() / held.len() as f64
     };
-    assert!((offer.without - mean(result)).abs() < 1e-9, "J as it is");
-    let taken = mean(EXAMPLE_WITH_LEADS.condition(ConditionId(1)).unwrap());
+    assert!(
+        (offer.without - mean_cost(result)).abs() < 1e-9,
+        "mean J without leads"
+    );
+    let with_leads = mean_cost(EXAMPLE_WITH_LEADS.condition(ConditionId(1)).unwrap());
     // 10 %: introducing leads changes the gains slightly.
     assert!(
-        (offer.with - taken).abs() < 0.1 * offer.without,
-        "{offer:?}, {taken}"
+        (offer.with - with_leads).abs() < 0.1 * offer.without,
+        "{offer:?}, mean J with leads {with_leads}"
     );
     let offered = condition_remarks(&study, result, None)
         .into_iter()
@@ -303,13 +334,14 @@ fn where_all_held_responses_want_lead_the_result_offers_it_with_what_it_buys() {
             .unwrap()
             .offer
             .is_none(),
-        "taken already"
+        "leads are not offered where they are in use"
     );
 }
 
 /// Returns a dataset with the plant of the reference, `H_oi = g (s + q) / (s^2 + p s + p^2)`, as
-/// the physics model. The identified model has known gains and signed delays in addition.
-fn known(entry: &Value, plant: &Value) -> Dataset {
+/// the physics model. The identified model has the known gains and signed delays of `entry` in
+/// addition; a negative delay is a lead filter.
+fn dataset_of_known_delays(entry: &Value, plant: &Value) -> Dataset {
     let number_at = |name: &str, pair: Pair| number(&plant[name][pair.output][pair.input]);
     let pairs: Vec<Pair> = PairTable::filled(3, 2, ()).pairs().collect();
     let mut a = DMatrix::zeros(12, 12);
@@ -318,84 +350,43 @@ fn known(entry: &Value, plant: &Value) -> Dataset {
     for (place, &pair) in pairs.iter().enumerate() {
         let [g, p, q] = ["g", "p", "q"].map(|name| number_at(name, pair));
         let at = 2 * place;
-        (a[(at, at + 1)], a[(at + 1, at)], a[(at + 1, at + 1)]) = (1.0, -p * p, -p);
+        a[(at, at + 1)] = 1.0;
+        a[(at + 1, at)] = -p * p;
+        a[(at + 1, at + 1)] = -p;
         b[(at + 1, pair.input)] = 1.0;
-        (c[(pair.output, at)], c[(pair.output, at + 1)]) = (g * q, g);
+        c[(pair.output, at)] = g * q;
+        c[(pair.output, at + 1)] = g;
     }
     let dynamics = Dynamics::StateSpace(StateSpace::new(a, b, c, DMatrix::zeros(3, 2)).unwrap());
     let grid = FrequencyGrid::logarithmic(Band::new(0.5, 12.0).unwrap(), 200);
     let design = LeadDesign::new(lead_settings(entry), grid.omega().into());
-    let channel = |side: &str, at: usize, omega: f64| {
-        let k = numbers(&entry[format!("k_{side}")])[at];
-        let tau_s = numbers(&entry[format!("tau_{side}_s")])[at];
-        let factor = design
-            .filter(tau_s)
-            .map_or(Complex::from_polar(1.0, -omega * tau_s), |filter| {
-                filter.at(omega)
-            });
+    let channel_factor = |side: &str, index: usize, omega: f64| {
+        let k = numbers(&entry[format!("k_{side}")])[index];
+        let tau_s = numbers(&entry[format!("tau_{side}_s")])[index];
+        // A lead has a filter; a delay turns the phase.
+        let factor = match design.filter(tau_s) {
+            Some(filter) => filter.at(omega),
+            None => Complex::from_polar(1.0, -omega * tau_s),
+        };
         factor * k
     };
     let flight = FrequencyResponse::from_dynamics(&dynamics, &grid)
         .curves()
         .map(|pair, values| {
-            let factor =
-                |omega: f64| channel("out", pair.output, omega) * channel("in", pair.input, omega);
-            values
-                .iter()
-                .zip(grid.omega())
-                .map(|(value, &omega)| value * factor(omega))
-                .collect::<Vec<_>>()
+            let mut flight = Vec::with_capacity(values.len());
+            for (value, &omega) in values.iter().zip(grid.omega()) {
+                let output_factor = channel_factor("out", pair.output, omega);
+                let input_factor = channel_factor("in", pair.input, omega);
+                flight.push(value * (output_factor * input_factor));
+            }
+            flight
         });
-    let part = |of: fn(&Complex<f64>) -> f64| {
-        flight.map(|_, values| values.iter().map(of).collect::<Vec<f64>>())
-    };
-    let measured = MeasuredResponse::new(
-        grid.omega().to_vec(),
-        &part(|value| value.re),
-        &part(|value| value.im),
-        None,
-    )
-    .unwrap();
-    let physics = Model::new("nominal", Origin::Nominal { perturbation: None }, dynamics);
-    let identified = Model::new(
-        "flight",
-        Origin::Identified {
-            method: None,
-            order: None,
-        },
-        Dynamics::Measured(measured),
-    );
-    let flight_state = FlightState {
-        id: ConditionId(1),
-        name: "known".to_owned(),
-        airspeed_kt: 60.0,
-        altitude: None,
-        altitude_ft: None,
-        weight: None,
-        mass_kg: None,
-    };
-    let on: Vec<Vec<f64>> = list(&entry["on"]).iter().map(numbers).collect();
-    let channels = |letter: &str, count| {
-        (0..count)
-            .map(|index| Channel::new(format!("{letter}{index}"), ""))
-            .collect()
-    };
-    let header = DatasetHeader {
-        name: "known".to_owned(),
-        description: String::new(),
-        inputs: channels("u", 2),
-        outputs: channels("y", 3),
-        on_axis: PairTable::from_fn(3, 2, |pair| {
-            on.contains(&vec![pair.output as f64, pair.input as f64])
-        }),
-        band: Band::new(0.5, 12.0).unwrap(),
-        parameters: Vec::new(),
-    };
-    Dataset::new(
-        header,
-        vec![Condition::new(flight_state, vec![physics], vec![identified]).unwrap()],
-    )
-    .unwrap()
+    let measured = measured_response(&grid, &flight, None);
+    let on_axis: Vec<Vec<f64>> = list(&entry["on"]).iter().map(numbers).collect();
+    let on_axis = PairTable::from_fn(3, 2, |pair| {
+        on_axis.contains(&vec![pair.output as f64, pair.input as f64])
+    });
+    dataset_with_flight(flight_state("known", 60.0), dynamics, measured, on_axis)
 }
 
 fn lead_settings(entry: &Value) -> LeadSettings {
@@ -412,11 +403,14 @@ fn lead_settings(entry: &Value) -> LeadSettings {
 }
 
 #[test]
-fn known_signed_delays_and_gains_are_found_again() {
+fn known_signed_delays_and_gains_are_recovered() {
     let reference = json(REFERENCE);
     for entry in list(&reference["recovers"]) {
         let name = entry["name"].as_str().unwrap();
-        let mut study = Study::new(Arc::new(known(entry, &reference["plant"])));
+        let mut study = Study::new(Arc::new(dataset_of_known_delays(
+            entry,
+            &reference["plant"],
+        )));
         let lead = lead_settings(entry);
         for edit in [
             setting_table::PHASE.to(PhaseCorrection::Lead),
@@ -431,16 +425,16 @@ fn known_signed_delays_and_gains_are_found_again() {
         let result = analysis.condition(ConditionId(1)).unwrap();
         let leads = result.correction.leads.as_ref().unwrap();
         let taus = |side: &str| numbers(&entry[format!("tau_{side}_s")]);
-        for (pair, wanted_s) in result.comparison.delta.band_delay_s.iter() {
+        for (pair, delta_delay_s) in result.comparison.delta.band_delay_s.iter() {
             let sum_s = taus("out")[pair.output] + taus("in")[pair.input];
             assert!(
-                (wanted_s.unwrap() - sum_s).abs() < 1e-6,
+                (delta_delay_s.unwrap() - sum_s).abs() < 1e-6,
                 "{name}: D of {pair:?}"
             );
             let found_s = result.correction.net_delay_s(pair);
             assert!(
                 (found_s - sum_s).abs() < 1e-6,
-                "{name}: {pair:?} {found_s} {sum_s}"
+                "{name}: net delay of {pair:?} is {found_s} s instead of {sum_s} s"
             );
         }
         // A constant may be moved from all outputs to all inputs without any change of the net
@@ -449,46 +443,42 @@ fn known_signed_delays_and_gains_are_found_again() {
         for (at, tau_s) in taus("out").iter().enumerate() {
             assert!(
                 (leads.taus_s.outputs[at] + constant_s - tau_s).abs() < 1e-6,
-                "{name}"
+                "{name}: tau of output {at}"
             );
         }
-        for (at, gain) in list(&entry["on"])
-            .iter()
-            .map(numbers)
-            .zip(numbers(&entry["net_gain_on"]))
-        {
-            let pair = Pair::new(at[0] as usize, at[1] as usize);
+        let on_axis = list(&entry["on"]).iter().map(numbers);
+        for (indices, gain) in on_axis.zip(numbers(&entry["net_gain_on"])) {
+            let pair = Pair::new(indices[0] as usize, indices[1] as usize);
             assert!(
                 (result.correction.net_gain(pair) / gain - 1.0).abs() < 1e-3,
-                "{name}: {pair:?}"
+                "{name}: net gain of {pair:?}"
             );
         }
         assert_eq!(
-            leads.filters()[CorrectedChannel::Input(0)].is_some(),
+            leads.filters()[Channel::Input(0)].is_some(),
             leads.taus_s.inputs[0] < 0.0
         );
     }
 }
 
 #[test]
-fn what_a_response_wants_has_the_bar_of_whole_analyses_with_each_model_pinned() {
+fn the_bar_of_a_lead_is_the_scatter_of_analyses_with_each_physics_model_pinned() {
     let mut engine = Engine::default();
     let analysis = analyze(&mut engine, &with_leads());
-    let sure = engine.uncertainty(&analysis, &Unobserved).unwrap();
+    let uncertainty = engine.uncertainty(&analysis, &Unobserved).unwrap();
     let id = ConditionId(1);
     let study = &analysis.study;
     let result = analysis.condition(id).unwrap();
-    let words = lead_words(study, result, Some(&sure));
-    let with_bar = |of: &String| {
-        of.starts_with("LAT → P ")
-            && [" 65 ± ", " 24 ms ", " 41 ms "]
-                .iter()
-                .all(|part| of.contains(part))
-    };
-    assert!(words.iter().any(with_bar), "{words:?}");
+    let words = lead_words(study, result, Some(&uncertainty));
+    let sentence = words.iter().find(|line| line.starts_with("LAT → P "));
+    let sentence = sentence.unwrap_or_else(|| panic!("no line about LAT → P: {words:?}"));
+    // 65 ms over the band, of which 24 ms at P and 41 ms at LAT.
+    for part in [" 65 ± ", " 24 ms ", " 41 ms "] {
+        assert!(sentence.contains(part), "{part:?} is not in {sentence:?}");
+    }
     // The tau of a channel with another physics model as the representative equals its tau in a
     // whole analysis in which that model is pinned.
-    let channel = CorrectedChannel::Input(study.dataset.find_pair("P", "LAT").unwrap().input);
+    let channel = Channel::Input(study.dataset.find_pair("P", "LAT").unwrap().input);
     let representative = result.representative_name(BundleKind::Physics);
     let condition = study.dataset.condition(id).unwrap();
     let others: Vec<&str> = condition
@@ -514,34 +504,31 @@ fn what_a_response_wants_has_the_bar_of_whole_analyses_with_each_model_pinned() 
             .taus_s[channel]
     };
     let own_s = tau_s(&alone);
-    let squares = others.iter().map(|name| {
+    let identified = result.representative_name(BundleKind::Identified);
+    let mut squares = 0.0;
+    for name in &others {
         let mut pinned = alone.clone();
-        let identified = result.representative_name(BundleKind::Identified);
-        pinned
-            .apply(&Edit::Pin(ModelId::new(id, BundleKind::Physics, *name)))
-            .unwrap();
-        pinned
-            .apply(&Edit::Pin(ModelId::new(
-                id,
-                BundleKind::Identified,
-                identified,
-            )))
-            .unwrap();
-        (tau_s(&pinned) - own_s).powi(2)
-    });
-    let variance = squares.sum::<f64>() / others.len() as f64;
-    let bar = sure.conditions[&id].bars[Scalar::ChannelDelay(channel)]
+        for model in [
+            ModelId::new(id, BundleKind::Physics, *name),
+            ModelId::new(id, BundleKind::Identified, identified),
+        ] {
+            pinned.apply(&Edit::Pin(model)).unwrap();
+        }
+        squares += (tau_s(&pinned) - own_s).powi(2);
+    }
+    let variance = squares / others.len() as f64;
+    let bar = uncertainty.conditions[&id].bars[Scalar::ChannelDelay(channel)]
         .as_ref()
         .unwrap();
     let trim = bar.trim.as_ref().unwrap().variance;
     assert!(
         bar.value < 0.0 && (bar.value - own_s).abs() < 1e-12,
-        "a lead: {}",
+        "the bar is of {} s, the lead is {own_s} s",
         bar.value
     );
     // Both values are from the same analyses; they differ by the rounding of the convex solver.
     assert!(
         (trim - variance).abs() <= 1e-6 * variance,
-        "{trim} {variance}"
+        "variance {trim} in the bar, {variance} over the analyses"
     );
 }

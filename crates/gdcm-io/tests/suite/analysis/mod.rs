@@ -24,6 +24,7 @@ mod example;
 mod known_answer;
 mod lead;
 mod mean_gain;
+mod measured_flight;
 mod modes;
 mod physics;
 mod physics_stage;
@@ -58,6 +59,47 @@ fn texts(value: &Value) -> Vec<&str> {
         .iter()
         .map(|text| text.as_str().unwrap())
         .collect()
+}
+
+/// Smallest magnitudes that matter, by kind of result: tolerances are relative to these for results
+/// near zero.
+mod scale {
+    /// Gains, ratios and their logarithms have the order of magnitude 1.
+    pub const GAIN: f64 = 1.0;
+    /// One millisecond: a tenth of the smallest delay that matters to an engineer.
+    pub const DELAY_S: f64 = 1e-3;
+    /// A J of 1 is a fiftieth of the value at which responses are almost indistinguishable.
+    pub const COST: f64 = 1.0;
+    /// The objective of eq. (11) is a sum of squared delays \[s^2\].
+    pub const DELAY_OBJECTIVE: f64 = 1e-4;
+    /// Airspeeds \[kt\].
+    pub const AIRSPEED_KT: f64 = 1.0;
+}
+
+/// Asserts agreement within 1e-6 of the reference value, or of `scale` if the reference is smaller.
+/// The reference values themselves are accurate to about 1e-9: both programs take medians and
+/// quantiles of the same 200 values.
+#[track_caller]
+fn assert_close(quantity: &str, found: f64, reference: f64, scale: f64) {
+    let allowed = 1e-6 * reference.abs().max(scale);
+    assert!(
+        (found - reference).abs() <= allowed,
+        "{quantity}: found {found}, reference {reference}"
+    );
+}
+
+#[track_caller]
+fn assert_all_close(quantity: &str, found: &[f64], reference: &Value, scale: f64) {
+    let reference = numbers(reference);
+    assert_eq!(found.len(), reference.len(), "{quantity}");
+    for (index, (found, reference)) in found.iter().zip(reference).enumerate() {
+        assert_close(
+            &format!("{quantity}, entry {}", index + 1),
+            *found,
+            reference,
+            scale,
+        );
+    }
 }
 
 fn analyze(engine: &mut Engine, study: &Study) -> Analysis {

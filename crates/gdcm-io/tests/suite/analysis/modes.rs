@@ -45,7 +45,7 @@ fn value_at(model: &StateSpace, pair: Pair, s: Complex<f64>) -> Complex<f64> {
 }
 
 #[test]
-fn the_poles_of_published_models_have_the_sums_of_powers_of_their_matrices() {
+fn power_sums_of_the_poles_equal_the_traces_of_matrix_powers() {
     for file in MODELS {
         let model = state_space(file);
         let poles: Vec<Complex<f64>> = modes(&model)
@@ -62,16 +62,17 @@ fn the_poles_of_published_models_have_the_sums_of_powers_of_their_matrices() {
             // its rounding errors.
             assert!(
                 (sum - power.trace()).norm() <= 1e-12 * size,
-                "{file}, power {exponent}: {sum} {}",
+                "{file}, power {exponent}: sum over poles {sum}, trace {}",
                 power.trace()
             );
-            (power, size) = (&power * model.a(), size * model.a().norm());
+            power = &power * model.a();
+            size *= model.a().norm();
         }
     }
 }
 
 #[test]
-fn the_four_poles_of_a_near_defective_chain_are_near_their_place_and_without_participation() {
+fn poles_of_a_near_defective_chain_are_approximate_and_have_no_participation() {
     let found = modes(&state_space("../near-defective-model.json")).unwrap();
     for mode in &found[..4] {
         // A perturbation of about 1e-15 |A| with |A| up to 1e3 moves the poles of a chain of four
@@ -81,7 +82,7 @@ fn the_four_poles_of_a_near_defective_chain_are_near_their_place_and_without_par
     }
     assert!(
         (found[4].pole + 0.001).norm() > 0.03,
-        "the fifth is of the stable block: {}",
+        "the fifth pole is not of the chain: {}",
         found[4].pole
     );
 }
@@ -121,17 +122,17 @@ fn the_responses_of_published_models_are_zero_at_their_zeros() {
 }
 
 #[test]
-fn the_envelopes_are_those_of_independent_code() {
+fn muad_envelopes_match_the_reference() {
     let golden = json(include_str!(
         "../../../../../tests/data/reference/muad-golden.json"
     ));
     let rows = list(&golden["rows"]);
     assert_eq!(rows.len(), 14);
     for row in rows {
-        let of = |key: &str| number(&row[key]);
-        let muad = Muad::at(of("w"));
+        let muad = Muad::at(number(&row["w"]));
         let found = [muad.magnitude_db, muad.phase_deg].concat();
-        let expected = ["gain_lo_dB", "gain_up_dB", "phase_lo_deg", "phase_up_deg"].map(of);
+        let keys = ["gain_lo_dB", "gain_up_dB", "phase_lo_deg", "phase_up_deg"];
+        let expected = keys.map(|key| number(&row[key]));
         // The reference evaluates the same formula in another order.
         assert!(
             found
@@ -145,7 +146,7 @@ fn the_envelopes_are_those_of_independent_code() {
 
 /// Returns the names of the models of an example condition at which the track of some mode is
 /// discontinuous.
-fn jumping(id: i64) -> Vec<String> {
+fn models_with_mode_jumps(id: i64) -> Vec<String> {
     let dataset = &crate::REFERENCE_DATASET.dataset;
     let modes =
         ConditionModes::compute(dataset.condition(ConditionId(id)).unwrap(), &Unobserved).unwrap();
@@ -174,17 +175,24 @@ fn jumping(id: i64) -> Vec<String> {
 }
 
 #[test]
-fn the_modes_jump_where_the_physics_model_has_a_step_near_the_trim() {
+fn mode_tracks_are_discontinuous_exactly_at_the_suggested_outliers() {
     let suggested = EXAMPLE_WITH_SUGGESTIONS_REJECTED
         .condition(ConditionId(10))
         .unwrap()
         .suggested();
-    assert_eq!((suggested.len(), jumping(10)), (3, suggested));
-    assert_eq!([jumping(1), jumping(3)], [[""; 0]; 2], "smooth bundles");
+    assert_eq!(suggested.len(), 3);
+    assert_eq!(models_with_mode_jumps(10), suggested);
+    for smooth in [1, 3] {
+        assert_eq!(
+            models_with_mode_jumps(smooth),
+            [""; 0],
+            "condition {smooth}"
+        );
+    }
 }
 
 #[test]
-fn states_take_part_in_the_modes_by_their_names() {
+fn actuators_and_sensors_do_not_participate_in_slow_modes() {
     let condition = crate::REFERENCE_DATASET.dataset.conditions()[0].clone();
     let nominal = &condition.bundle(BundleKind::Physics)[condition.nominal()];
     assert_eq!(
@@ -219,9 +227,9 @@ fn states_take_part_in_the_modes_by_their_names() {
                 .iter()
                 .map(|&(state, share)| (nominal.state_name(state), share))
             {
-                let is_beside = state.starts_with("act_") || state.starts_with("sens_");
+                let is_attached = state.starts_with("act_") || state.starts_with("sens_");
                 assert!(
-                    !is_beside || share < 1e-6,
+                    !is_attached || share < 1e-6,
                     "{state} {share} in {}",
                     mode.pole
                 );
@@ -232,7 +240,7 @@ fn states_take_part_in_the_modes_by_their_names() {
 }
 
 #[test]
-fn the_zeros_of_a_response_are_had_of_every_model_of_a_condition() {
+fn responses_of_every_model_of_a_condition_are_small_at_their_zeros() {
     let condition = crate::REFERENCE_DATASET.dataset.conditions()[0].clone();
     let pair = crate::REFERENCE_DATASET
         .dataset

@@ -19,7 +19,8 @@ use gdcm_study::{AssessedCorrection, AssessmentTable, PhaseCorrection};
 use super::*;
 use crate::EveryCore;
 
-static KNOWN: LazyLock<Value> = LazyLock::new(|| {
+/// Results of the independent numpy code, and the true changes of the parameters.
+static REFERENCE: LazyLock<Value> = LazyLock::new(|| {
     json(include_str!(
         "../../../../../tests/data/reference/physics.json"
     ))
@@ -43,7 +44,7 @@ fn grid() -> FrequencyGrid {
 fn problem(parameters: &[OfferedParameter]) -> PhysicsProblem {
     let grid = grid();
     let mut conditions = Vec::new();
-    for known in list(&KNOWN["dataset"]["analysis"]["conditions"]) {
+    for known in list(&REFERENCE["dataset"]["analysis"]["conditions"]) {
         let id = ConditionId(known["id"].as_i64().unwrap());
         let condition = DATASET.condition(id).unwrap();
         let model = |kind, key: &str| condition.model(kind, known[key].as_str().unwrap()).unwrap();
@@ -80,29 +81,31 @@ fn problem(parameters: &[OfferedParameter]) -> PhysicsProblem {
     }
 }
 
-static FOUND: LazyLock<PhysicsDiagnosis> = LazyLock::new(|| {
+/// Diagnosis of all parameters.
+static DIAGNOSIS: LazyLock<PhysicsDiagnosis> = LazyLock::new(|| {
     let parameters = OfferedParameter::list(&DATASET);
     diagnose(&problem(&parameters), &EveryCore, &Unobserved).unwrap()
 });
 
+/// Returns the tolerance that the reference states for a quantity.
 fn tolerance(key: &str) -> f64 {
-    number(&KNOWN["tolerance"][key])
+    number(&REFERENCE["tolerance"][key])
 }
 
-fn assert_close(found: &[f64], expected: &Value, tolerance: f64, what: &str) {
+fn assert_close(found: &[f64], expected: &Value, tolerance: f64, quantity: &str) {
     let expected = numbers(expected);
-    assert_eq!(found.len(), expected.len(), "{what}");
+    assert_eq!(found.len(), expected.len(), "{quantity}");
     for (index, (found, expected)) in found.iter().zip(&expected).enumerate() {
         assert!(
             (found - expected).abs() <= tolerance,
-            "{what}, {index}: {found} instead of {expected}"
+            "{quantity}, {index}: {found} instead of {expected}"
         );
     }
 }
 
 #[test]
 fn the_parameters_of_the_dataset_are_offered() {
-    let known = &KNOWN["dataset"]["analysis"];
+    let known = &REFERENCE["dataset"]["analysis"];
     let offered = OfferedParameter::list(&DATASET);
     let names: Vec<&str> = offered
         .iter()
@@ -120,17 +123,17 @@ fn the_parameters_of_the_dataset_are_offered() {
 
 #[test]
 fn every_pass_agrees_with_the_reference() {
-    let known = &KNOWN["dataset"]["analysis"];
+    let known = &REFERENCE["dataset"]["analysis"];
     let passes = list(&known["passes"]);
-    assert_eq!(FOUND.fit.passes.len(), passes.len());
-    for (pass, expected) in FOUND.fit.passes.iter().zip(passes) {
+    assert_eq!(DIAGNOSIS.fit.passes.len(), passes.len());
+    for (pass, expected) in DIAGNOSIS.fit.passes.iter().zip(passes) {
         assert_close(&pass.z, &expected["z"], tolerance("z"), "z of a pass");
         assert!((pass.misfit_square - number(&expected["s2"])).abs() < 1e-8);
         let square = number(&expected["sum_of_weighted_squares"]);
         assert!((pass.weighted_square / square - 1.0).abs() < 1e-6);
     }
-    assert_close(&FOUND.fit.z, &known["z"], tolerance("z"), "z");
-    let delays_s = &FOUND.fit.delays_s;
+    assert_close(&DIAGNOSIS.fit.z, &known["z"], tolerance("z"), "z");
+    let delays_s = &DIAGNOSIS.fit.delays_s;
     assert_close(
         &delays_s.outputs,
         &known["tau_out_s"],
@@ -143,19 +146,24 @@ fn every_pass_agrees_with_the_reference() {
         tolerance("tau_s"),
         "tau of inputs",
     );
-    for (ln_gains, expected) in FOUND.fit.ln_gains.iter().zip(list(&known["own_ln_gain"])) {
+    for (ln_gains, expected) in DIAGNOSIS
+        .fit
+        .ln_gains
+        .iter()
+        .zip(list(&known["own_ln_gain"]))
+    {
         let ln_gains = [&ln_gains.outputs[..], &ln_gains.inputs[..]].concat();
         assert_close(&ln_gains, expected, 1e-6, "ln gains");
     }
-    assert!((FOUND.fit.misfit - number(&known["misfit"])).abs() < 1e-8);
+    assert!((DIAGNOSIS.fit.misfit - number(&known["misfit"])).abs() < 1e-8);
     let spread = number(&known["spread_of_identified"]);
-    assert!((FOUND.spread.unwrap() - spread).abs() < 1e-7);
+    assert!((DIAGNOSIS.spread.unwrap() - spread).abs() < 1e-7);
 }
 
 #[test]
 fn intervals_and_their_parts_agree_with_the_reference() {
-    let known = &KNOWN["dataset"]["analysis"];
-    let found = &FOUND.parameters;
+    let known = &REFERENCE["dataset"]["analysis"];
+    let found = &DIAGNOSIS.parameters;
     let half_widths: Vec<f64> = found.iter().map(|p| p.half_width.unwrap()).collect();
     assert_close(
         &half_widths,
@@ -163,41 +171,47 @@ fn intervals_and_their_parts_agree_with_the_reference() {
         tolerance("half_width"),
         "half-width",
     );
-    for kind in ["condition", "output", "input", "band", "prior"] {
-        let values: Vec<f64> = found
-            .iter()
-            .map(|parameter| {
-                let variance = parameter.variance.unwrap();
-                match kind {
-                    "condition" => variance.condition.unwrap(),
-                    "output" => variance.output.unwrap(),
-                    "input" => variance.input.unwrap(),
-                    "band" => variance.band.unwrap(),
-                    _ => variance.prior,
-                }
-            })
-            .collect();
-        assert_close(&values, &known["variance"][kind], 1e-6, kind);
+    for part in ["condition", "output", "input", "band", "prior"] {
+        let mut variances = Vec::new();
+        for parameter in found {
+            let variance = parameter.variance.unwrap();
+            variances.push(match part {
+                "condition" => variance.condition.unwrap(),
+                "output" => variance.output.unwrap(),
+                "input" => variance.input.unwrap(),
+                "band" => variance.band.unwrap(),
+                _ => variance.prior,
+            });
+        }
+        assert_close(&variances, &known["variance"][part], 1e-6, part);
     }
     let truth = numbers(&known["true_change"]);
     let plausible = numbers(&known["plausible_sd"]);
     for (index, parameter) in found.iter().enumerate() {
         let error = parameter.z - truth[index] / plausible[index];
-        assert!(error.abs() < half_widths[index], "{index} covers its truth");
+        assert!(
+            error.abs() < half_widths[index],
+            "the interval of parameter {index} does not contain its true value"
+        );
     }
-    for (condition, expected) in FOUND
+    for (condition, expected) in DIAGNOSIS
         .conditions
         .iter()
         .zip(list(&known["z_without_condition"]))
     {
-        assert_close(&condition.z_without, expected, tolerance("z"), "z without");
+        assert_close(
+            &condition.z_without,
+            expected,
+            tolerance("z"),
+            "z without a condition",
+        );
     }
 }
 
 #[test]
-fn what_the_data_tell_agrees_with_the_reference() {
-    let known = &KNOWN["dataset"]["analysis"];
-    let found = &FOUND.identifiability;
+fn identifiability_agrees_with_the_reference() {
+    let known = &REFERENCE["dataset"]["analysis"];
+    let found = &DIAGNOSIS.identifiability;
     assert_eq!(found.singular_values.len(), 7);
     for (row, expected) in list(&known["information"]).iter().enumerate() {
         let information: Vec<f64> = found.information.row(row).iter().copied().collect();
@@ -228,14 +242,19 @@ fn what_the_data_tell_agrees_with_the_reference() {
         .iter()
         .map(|share| share.unwrap())
         .collect();
-    assert_close(&shares, &known["share_channels_can_take"], 1e-6, "channels");
-    assert!(FOUND.pairs.is_empty());
+    assert_close(
+        &shares,
+        &known["share_channels_can_take"],
+        1e-6,
+        "share that channels can take",
+    );
+    assert!(DIAGNOSIS.pairs.is_empty());
 }
 
 #[test]
 fn scores_names_and_verdict_agree_with_the_reference() {
-    let known = &KNOWN["dataset"]["analysis"];
-    let scores = FOUND.scores.as_ref().unwrap();
+    let known = &REFERENCE["dataset"]["analysis"];
+    let scores = DIAGNOSIS.scores.as_ref().unwrap();
     assert_close(
         &scores.alone,
         &known["score"]["alone"],
@@ -251,23 +270,27 @@ fn scores_names_and_verdict_agree_with_the_reference() {
         assert!((step.score.ratio - number(&expected["ratio"])).abs() < tolerance("ratio"));
     }
     let explained = number(&known["explained"]);
-    assert!((FOUND.explained().unwrap() - explained).abs() < tolerance("ratio"));
-    let named: Vec<&str> = FOUND.named().iter().map(|&index| names[index]).collect();
+    assert!((DIAGNOSIS.explained().unwrap() - explained).abs() < tolerance("ratio"));
+    let named: Vec<&str> = DIAGNOSIS
+        .named()
+        .iter()
+        .map(|&index| names[index])
+        .collect();
     assert_eq!(named, texts(&known["named"]));
-    assert_eq!(FOUND.verdict, Some(Verdict::Accounts));
-    let inflow = &FOUND.parameters[2];
+    assert_eq!(DIAGNOSIS.verdict, Some(Verdict::Accounts));
+    let inflow = &DIAGNOSIS.parameters[2];
     assert_eq!(inflow.why_not_named.unwrap().code(), "little-gain");
     assert_eq!(
-        FOUND.parameters[0].why_not_named.unwrap().code(),
+        DIAGNOSIS.parameters[0].why_not_named.unwrap().code(),
         "interval-contains-zero"
     );
 }
 
 #[test]
-fn the_named_parameters_alone_agree_with_the_reference() {
-    let known = &KNOWN["dataset"]["analysis"]["named_only"];
+fn a_fit_of_the_named_parameters_alone_agrees_with_the_reference() {
+    let known = &REFERENCE["dataset"]["analysis"]["named_only"];
     let parameters = OfferedParameter::list(&DATASET);
-    let problem = problem(&parameters).with_fitted(&FOUND.named());
+    let problem = problem(&parameters).with_fitted(&DIAGNOSIS.named());
     let found = fit_parameters(&problem, &EveryCore, &Unobserved).unwrap();
     assert_eq!(found.passes.len() as u64, known["passes"].as_u64().unwrap());
     assert_close(&found.z, &known["z"], tolerance("z"), "z");
@@ -285,8 +308,8 @@ fn the_named_parameters_alone_agree_with_the_reference() {
     );
 }
 
-/// Returns the mean J of the physics representatives with the parameters at `z`, over the conditions
-/// and the on-axis responses, and over the conditions and the others.
+/// Returns the mean J of the nominal physics models with the parameters at `z` over the conditions:
+/// of the on-axis responses, and of the other responses.
 fn mean_costs(z: &[f64]) -> [f64; 2] {
     let parameters = OfferedParameter::list(&DATASET);
     let grid = grid();
@@ -322,8 +345,8 @@ fn mean_costs(z: &[f64]) -> [f64; 2] {
 }
 
 #[test]
-fn the_physics_models_at_the_values_found_cost_what_the_reference_says() {
-    let known = &KNOWN["dataset"]["analysis"]["J"];
+fn costs_of_the_moved_physics_models_agree_with_the_reference() {
+    let known = &REFERENCE["dataset"]["analysis"]["J"];
     assert_close(
         &mean_costs(&[0.0; 7]),
         &known["uncorrected"],
@@ -331,7 +354,7 @@ fn the_physics_models_at_the_values_found_cost_what_the_reference_says() {
         "uncorrected",
     );
     assert_close(
-        &mean_costs(&FOUND.fit.z),
+        &mean_costs(&DIAGNOSIS.fit.z),
         &known["with"]["physics"],
         tolerance("mean_J"),
         "with the values found",
@@ -339,7 +362,7 @@ fn the_physics_models_at_the_values_found_cost_what_the_reference_says() {
 }
 
 /// Returns the dataset with every physics model of its bundles at the values `z`.
-fn applied(z: &[f64]) -> Dataset {
+fn dataset_moved_to(z: &[f64]) -> Dataset {
     let parameters = OfferedParameter::list(&DATASET);
     let mut conditions = Vec::new();
     for condition in DATASET.conditions() {
@@ -356,11 +379,10 @@ fn applied(z: &[f64]) -> Dataset {
     Dataset::new(DATASET.header(), conditions).unwrap()
 }
 
-/// Returns the mean J of the corrected representatives over the conditions and the on-axis
-/// responses, and over the conditions and the others: under each condition's own correction, and
-/// under the schedule.
+/// Returns the mean J of the corrected representatives over the conditions: under each condition's
+/// own correction, and under the schedule; of the on-axis responses, and of the other responses.
 fn corrected_costs(z: &[f64]) -> [[f64; 2]; 2] {
-    let mut study = Study::new(Arc::new(applied(z)));
+    let mut study = Study::new(Arc::new(dataset_moved_to(z)));
     for edit in [
         setting_table::PHASE.to(PhaseCorrection::Lead),
         setting_table::POINTS.to(POINTS),
@@ -388,12 +410,12 @@ fn corrected_costs(z: &[f64]) -> [[f64; 2]; 2] {
 }
 
 #[test]
-fn corrections_after_the_parameters_cost_what_the_reference_says() {
-    let known = &KNOWN["dataset"]["analysis"];
+fn costs_of_corrections_after_the_parameters_agree_with_the_reference() {
+    let known = &REFERENCE["dataset"]["analysis"];
     let named = numbers(&known["named_only"]["z"]);
     for (z, expected) in [
         (vec![0.0; 7], &known["J"]["without"]),
-        (FOUND.fit.z.clone(), &known["J"]["with"]),
+        (DIAGNOSIS.fit.z.clone(), &known["J"]["with"]),
         (named, &known["J"]["with_named_only"]),
     ] {
         let [own, scheduled] = corrected_costs(&z);

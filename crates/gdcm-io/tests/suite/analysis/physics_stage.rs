@@ -23,7 +23,8 @@ use gdcm_words::suggested_runs::{run_template, suggestion_text};
 
 use super::*;
 
-static KNOWN: LazyLock<Value> = LazyLock::new(|| {
+/// Results of independent numpy code for [`DATASET`].
+static REFERENCE: LazyLock<Value> = LazyLock::new(|| {
     json(include_str!(
         "../../../../../tests/data/reference/physics.json"
     ))
@@ -60,12 +61,14 @@ fn decide(study: &mut Study, name: &str, decision: ParameterDecision) {
         .unwrap();
 }
 
-static ALL: LazyLock<Analysis> = LazyLock::new(|| {
+/// Analysis after a fit of all parameters.
+static WITH_ALL_PARAMETERS: LazyLock<Analysis> = LazyLock::new(|| {
     let study = reference_study(PhysicsCorrection::All);
     analyze(&mut Engine::default(), &study)
 });
 
-static OFF: LazyLock<Analysis> = LazyLock::new(|| {
+/// Analysis with the physics models of the file.
+static WITHOUT_PARAMETERS: LazyLock<Analysis> = LazyLock::new(|| {
     let study = reference_study(PhysicsCorrection::Off);
     analyze(&mut Engine::default(), &study)
 });
@@ -74,21 +77,23 @@ fn applied(analysis: &Analysis) -> &AppliedPhysics {
     analysis.applied_physics().unwrap()
 }
 
-fn assert_close(found: &[f64], expected: &Value, tolerance: f64, what: &str) {
+fn assert_close(found: &[f64], expected: &Value, tolerance: f64, quantity: &str) {
     let expected = numbers(expected);
-    assert_eq!(found.len(), expected.len(), "{what}");
+    assert_eq!(found.len(), expected.len(), "{quantity}");
     for (index, (found, expected)) in found.iter().zip(&expected).enumerate() {
         assert!(
             (found - expected).abs() <= tolerance,
-            "{what}, {index}: {found} instead of {expected}"
+            "{quantity}, {index}: {found} instead of {expected}"
         );
     }
 }
 
-fn pair_of(cost: AxisCost) -> [f64; 2] {
+/// Returns the mean J over the on-axis responses, and over the others.
+fn on_axis_and_others(cost: AxisCost) -> [f64; 2] {
     [cost.on_axis.unwrap(), cost.others.unwrap()]
 }
 
+/// Diagnoses the parameters of the dataset and assesses their benefit.
 fn assess(physics: PhysicsCorrection) -> Arc<PhysicsAssessment> {
     let job = PhysicsJob {
         study: reference_study(PhysicsCorrection::Off),
@@ -100,16 +105,20 @@ fn assess(physics: PhysicsCorrection) -> Arc<PhysicsAssessment> {
 
 #[test]
 fn the_stage_finds_the_values_of_the_reference() {
-    let known = &KNOWN["dataset"]["analysis"];
-    let z: Vec<f64> = applied(&ALL).values.iter().map(|value| value.z).collect();
+    let known = &REFERENCE["dataset"]["analysis"];
+    let z: Vec<f64> = applied(&WITH_ALL_PARAMETERS)
+        .values
+        .iter()
+        .map(|value| value.z)
+        .collect();
     assert_close(&z, &known["z"], 1e-6, "z");
-    let changes: Vec<f64> = applied(&ALL)
+    let changes: Vec<f64> = applied(&WITH_ALL_PARAMETERS)
         .values
         .iter()
         .map(|value| value.change())
         .collect();
     assert_close(&changes, &known["change"], 1e-4, "change");
-    let findings = applied(&ALL).findings.as_ref().unwrap();
+    let findings = applied(&WITH_ALL_PARAMETERS).findings.as_ref().unwrap();
     let named: Vec<&str> = findings
         .named()
         .iter()
@@ -121,7 +130,7 @@ fn the_stage_finds_the_values_of_the_reference() {
 
 #[test]
 fn the_named_parameters_are_fitted_again_with_the_rest_off() {
-    let known = &KNOWN["dataset"]["analysis"]["named_only"];
+    let known = &REFERENCE["dataset"]["analysis"]["named_only"];
     let study = reference_study(PhysicsCorrection::Named);
     let analysis = analyze(&mut Engine::default(), &study);
     let refit = applied(&analysis).refit.as_ref().unwrap();
@@ -136,9 +145,9 @@ fn the_named_parameters_are_fitted_again_with_the_rest_off() {
 
 #[test]
 fn channels_after_the_parameters_agree_with_the_reference() {
-    for known in list(&KNOWN["dataset"]["analysis"]["channels_after"]) {
+    for known in list(&REFERENCE["dataset"]["analysis"]["channels_after"]) {
         let id = ConditionId(known["id"].as_i64().unwrap());
-        let correction = &ALL.condition(id).unwrap().correction;
+        let correction = &WITH_ALL_PARAMETERS.condition(id).unwrap().correction;
         let delays_s = correction.signed_delays_s();
         assert_close(
             &delays_s.outputs,
@@ -161,35 +170,45 @@ fn channels_after_the_parameters_agree_with_the_reference() {
 }
 
 #[test]
-fn costs_agree_with_the_reference_for_conditions_left_out_too() {
-    let known = &KNOWN["dataset"]["analysis"]["J"];
+fn costs_agree_with_the_reference_also_for_left_out_conditions() {
+    let known = &REFERENCE["dataset"]["analysis"]["J"];
     let found = assess(PhysicsCorrection::All);
     let costs = &found.costs;
     for (cost, key) in [(costs.own, "own"), (costs.scheduled, "scheduled")] {
-        assert_close(&pair_of(cost.without), &known["without"][key], 1e-3, key);
-        assert_close(&pair_of(cost.with), &known["with"][key], 1e-3, key);
+        assert_close(
+            &on_axis_and_others(cost.without),
+            &known["without"][key],
+            1e-3,
+            key,
+        );
+        assert_close(
+            &on_axis_and_others(cost.with),
+            &known["with"][key],
+            1e-3,
+            key,
+        );
     }
     let left_out = costs.left_out.unwrap();
     assert_close(
-        &pair_of(left_out.without),
+        &on_axis_and_others(left_out.without),
         &known["without"]["left_out"],
         1e-3,
         "left out",
     );
     assert_close(
-        &pair_of(left_out.with),
+        &on_axis_and_others(left_out.with),
         &known["with"]["left_out"],
         1e-3,
         "left out",
     );
     assert_close(
-        &pair_of(costs.uncorrected),
+        &on_axis_and_others(costs.uncorrected),
         &known["uncorrected"],
         1e-3,
         "uncorrected",
     );
     assert_close(
-        &pair_of(found.moved_uncorrected),
+        &on_axis_and_others(found.moved_uncorrected),
         &known["with"]["physics"],
         1e-3,
         "moved",
@@ -206,11 +225,16 @@ fn costs_agree_with_the_reference_for_conditions_left_out_too() {
 
 #[test]
 fn the_job_for_the_named_parameters_agrees_with_the_reference() {
-    let known = &KNOWN["dataset"]["analysis"]["J"]["with_named_only"];
+    let known = &REFERENCE["dataset"]["analysis"]["J"]["with_named_only"];
     let costs = assess(PhysicsCorrection::Named).costs;
-    assert_close(&pair_of(costs.own.with), &known["own"], 1e-3, "own");
     assert_close(
-        &pair_of(costs.scheduled.with),
+        &on_axis_and_others(costs.own.with),
+        &known["own"],
+        1e-3,
+        "own",
+    );
+    assert_close(
+        &on_axis_and_others(costs.scheduled.with),
         &known["scheduled"],
         1e-3,
         "scheduled",
@@ -219,15 +243,16 @@ fn the_job_for_the_named_parameters_agrees_with_the_reference() {
 
 #[test]
 fn moved_models_reach_corrections_schedule_and_assessment() {
-    let ids: BTreeSet<ConditionId> = OFF.study.dataset.ids().collect();
-    let before = corrections(&OFF, "", &ids);
-    let after = corrections(&ALL, "", &ids);
+    let ids: BTreeSet<ConditionId> = WITHOUT_PARAMETERS.study.dataset.ids().collect();
+    let before = corrections(&WITHOUT_PARAMETERS, "", &ids);
+    let after = corrections(&WITH_ALL_PARAMETERS, "", &ids);
     for key in ["conditions", "schedule", "assessment"] {
         assert_ne!(before[key], after[key], "{key}");
     }
     assert_eq!(before.get("physics"), None);
     for id in DATASET.ids() {
-        let [before, after] = [&*OFF, &*ALL].map(|analysis| analysis.condition(id).unwrap());
+        let [before, after] = [&*WITHOUT_PARAMETERS, &*WITH_ALL_PARAMETERS]
+            .map(|analysis| analysis.condition(id).unwrap());
         // Representatives and outliers are decided on the models of the dataset.
         for kind in BundleKind::BOTH {
             assert_eq!(before.representative(kind), after.representative(kind));
@@ -244,11 +269,11 @@ fn moved_models_reach_corrections_schedule_and_assessment() {
 #[test]
 fn the_moved_nominal_model_has_the_response_of_its_increments() {
     let id = DATASET.ids().next().unwrap();
-    let result = ALL.condition(id).unwrap();
+    let result = WITH_ALL_PARAMETERS.condition(id).unwrap();
     let grid = FrequencyGrid::logarithmic(DATASET.band(), 40);
     let nominal = &result.condition.bundle(BundleKind::Physics)[result.condition.nominal()];
     let response = FrequencyResponse::from_dynamics(&nominal.dynamics, &grid);
-    let findings = applied(&ALL).findings.as_ref().unwrap();
+    let findings = applied(&WITH_ALL_PARAMETERS).findings.as_ref().unwrap();
     let condition = &findings.problem.conditions[0];
     assert_eq!(condition.id, id);
     let family = condition
@@ -265,10 +290,14 @@ fn the_moved_nominal_model_has_the_response_of_its_increments() {
 }
 
 #[test]
-fn error_bars_swap_the_moved_models() {
+fn error_bars_depend_on_the_moved_models() {
     let engine = || Engine::with_executor(Box::new(crate::EveryCore));
-    let all = engine().uncertainty(&ALL, &Unobserved).unwrap();
-    let off = engine().uncertainty(&OFF, &Unobserved).unwrap();
+    let all = engine()
+        .uncertainty(&WITH_ALL_PARAMETERS, &Unobserved)
+        .unwrap();
+    let off = engine()
+        .uncertainty(&WITHOUT_PARAMETERS, &Unobserved)
+        .unwrap();
     assert_ne!(all.conditions, off.conditions);
 }
 
@@ -285,7 +314,7 @@ fn values_by_hand_move_the_models_without_a_fit() {
         panic!("a single value")
     };
     assert!(value.is_by_hand && (value.z - 1.0).abs() < 1e-15);
-    // The value of the run gives its matrices.
+    // At the parameter change of a run, the moved nominal model has the matrices of that run.
     let condition = DATASET.condition(id).unwrap();
     let run = condition
         .moved_models()
@@ -380,7 +409,7 @@ fn a_condition_without_runs_keeps_its_models_with_a_caution() {
 fn runs_that_do_not_fit_are_refused_with_reasons() {
     let dataset = with_moved(|condition| {
         let mut moved = condition.moved_models().to_vec();
-        // Twice the same run under another name, and a run that is the nominal model.
+        // The first run again under another name, and a run that equals the nominal model.
         let mut copy = moved[0].clone();
         copy.model.name = "copy".to_owned();
         moved.push(copy);
@@ -399,7 +428,7 @@ fn runs_that_do_not_fit_are_refused_with_reasons() {
         });
         moved
     });
-    let study = study_of(&dataset, PhysicsCorrection::All);
+    let mut study = study_of(&dataset, PhysicsCorrection::All);
     let analysis = analyze(&mut Engine::default(), &study);
     // A parameter without any usable run keeps every condition out of the fit.
     let failure = analysis.physics.as_ref().unwrap().as_ref().unwrap_err();
@@ -407,7 +436,6 @@ fn runs_that_do_not_fit_are_refused_with_reasons() {
     let left_out = failure.left_out().unwrap();
     assert_eq!(left_out.conditions.len(), 8);
     assert_eq!(left_out.conditions[0].why.code(), "condition-lacks-run");
-    let mut study = study;
     decide(&mut study, "nothing", ParameterDecision::On(false));
     let analysis = analyze(&mut Engine::default(), &study);
     let runs = &applied(&analysis).findings.as_ref().unwrap().left_out.runs;
@@ -418,7 +446,7 @@ fn runs_that_do_not_fit_are_refused_with_reasons() {
         .iter()
         .map(|value| value.z)
         .collect();
-    assert_close(&z, &KNOWN["dataset"]["analysis"]["z"], 1e-6, "z");
+    assert_close(&z, &REFERENCE["dataset"]["analysis"]["z"], 1e-6, "z");
 }
 
 #[test]
@@ -434,11 +462,11 @@ fn requests_without_data_fail_with_a_code_and_keep_the_models() {
         let id = dataset.ids().next().unwrap();
         assert_eq!(
             analysis.condition(id).unwrap().correction,
-            OFF.condition(id).unwrap().correction
+            WITHOUT_PARAMETERS.condition(id).unwrap().correction
         );
     }
     let mut study = reference_study(PhysicsCorrection::All);
-    for name in texts(&KNOWN["dataset"]["analysis"]["names"]) {
+    for name in texts(&REFERENCE["dataset"]["analysis"]["names"]) {
         decide(&mut study, name, ParameterDecision::On(false));
     }
     let analysis = analyze(&mut Engine::default(), &study);
@@ -482,7 +510,7 @@ fn decisions_about_unknown_parameters_and_bad_values_are_refused() {
 }
 
 #[test]
-fn three_conditions_are_fitted_without_names() {
+fn a_fit_to_three_conditions_names_no_parameter() {
     let mut study = reference_study(PhysicsCorrection::All);
     for condition in DATASET.ids().skip(3) {
         study
@@ -574,7 +602,7 @@ fn a_rerun_at_the_values_confirms_the_prediction() {
 }
 
 #[test]
-fn stopping_the_job_ends_it() {
+fn a_cancelled_job_returns_an_error() {
     struct Stopped;
     impl gdcm_study::Progress for Stopped {
         fn cancelled(&self) -> bool {
@@ -602,7 +630,7 @@ fn couplings_are_fitted_to_the_moved_models() {
 }
 
 #[test]
-fn the_pattern_of_couplings_and_leads_suggests_runs() {
+fn patterns_of_couplings_and_leads_suggest_runs() {
     let path = crate::program_folder().join("tests/data/reference/example-dataset.json.gz");
     let dataset = load_dataset(&path).unwrap().dataset;
     let mut study = Study::new(Arc::clone(&dataset));
@@ -632,7 +660,7 @@ fn the_pattern_of_couplings_and_leads_suggests_runs() {
     };
     assert!(shares[0] * shares[1] < 0.0);
     assert!(codes.contains(&"pitch-gain-over-airspeed"), "{codes:?}");
-    // Without couplings, no pattern of theirs is seen.
+    // Without an assessment of couplings, no pattern of couplings is found.
     for suggestion in suggested_runs(&analysis, None) {
         assert!(!suggestion.pattern.code().starts_with("crossed"));
     }

@@ -1360,7 +1360,7 @@ fn check_finds_a_wrong_structure_without_reading_a_large_file_to_its_end() {
 #[test]
 fn check_says_what_gain_cannot_be_computed_with() {
     let desk = Desk::new();
-    let value = crate::made_up::two_lags([[1e-74, 0.0], [0.0, 1.0]], [[1.0, 0.0], [0.0, 0.9]]);
+    let value = crate::synthetic::two_lags([[1e-74, 0.0], [0.0, 1.0]], [[1.0, 0.0], [0.0, 0.9]]);
     fs::write(desk.path("large.json"), value.to_string()).unwrap();
     desk.messages(&["check", "large.json"])
         .assert_success()

@@ -16,8 +16,6 @@ mod documents;
 mod exports;
 mod file_cycles;
 mod licences;
-#[path = "../../crates/gdcm-io/tests/suite/made_up.rs"]
-mod made_up;
 mod messages;
 mod outputs;
 mod physics;
@@ -27,6 +25,8 @@ mod report;
 mod requirements;
 mod scripts;
 mod structure;
+#[path = "../../crates/gdcm-io/tests/suite/synthetic.rs"]
+mod synthetic;
 mod window;
 
 /// Parses a JSON file.

@@ -8,7 +8,7 @@ use gdcm_io::{DatasetOrigin, load_dataset_bytes};
 
 use super::views::give;
 use super::*;
-use crate::made_up::two_lags;
+use crate::synthetic::two_lags;
 
 /// Dataset whose last identified model ends at 11.9 rad/s.
 const SHORT: &str = include_str!("../../data/edges/short-measurement.json");

@@ -31,7 +31,7 @@ use gdcm_sysid::records::LaidOutRecord;
 use super::assembling::{fill_in, type_into};
 use super::views::{give, show};
 use super::*;
-use crate::made_up::{Flight, Gusts, stable_aircraft, tries};
+use crate::synthetic::{Flight, Gusts, stable_aircraft, tries};
 
 const CONDITION_10_ID: ConditionId = ConditionId(10);
 
@@ -1299,7 +1299,7 @@ pub(crate) fn late_dataset(folder: &Path) -> PathBuf {
 
     let aircraft = stable_aircraft();
     let mut entries = Vec::new();
-    for (number, record) in Flight::of(aircraft.clone(), Gusts::light())
+    for (number, record) in Flight::new(aircraft.clone(), Gusts::light())
         .records(31, 4)
         .iter()
         .enumerate()

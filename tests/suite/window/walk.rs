@@ -15,7 +15,7 @@ use gdcm_study::Engine;
 use gdcm_study::decisions::setting_table;
 
 use super::*;
-use crate::made_up::tries;
+use crate::synthetic::tries;
 
 /// Number of steps between frames, and between comparisons.
 const STEPS_OF_A_FRAME: usize = 4;

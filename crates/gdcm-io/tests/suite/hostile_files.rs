@@ -1,4 +1,4 @@
-//! Malicious files: memory and work stay within the limits, the error is a single sentence that
+//! Malicious files: memory and work stay within their limits, the error is a single line that
 //! states the limit, and cancellation is prompt.
 
 use std::cell::Cell;
@@ -14,12 +14,13 @@ use gdcm_io::{FileError, FolderProgress, load_any, load_dataset, read_models};
 /// Memory limit \[bytes\] for the variables of a file in these tests.
 const MOST: u64 = 64 << 20;
 
-/// Returns the errors for a file that exceeds the budget, read as models and as records; `None` for
-/// a success.
+/// Reads a file as models and as records within [`MOST`] bytes; returns the errors, `None` for a
+/// success.
 fn refusals(name: &str, bytes: &[u8]) -> [Option<FileError>; 2] {
     refusals_within(MOST, name, bytes)
 }
 
+/// Like [`refusals`], within `most` bytes.
 fn refusals_within(most: u64, name: &str, bytes: &[u8]) -> [Option<FileError>; 2] {
     [
         models_of_bytes(bytes, name, &ReadingBudget::new(most)).err(),
@@ -31,7 +32,7 @@ fn refusals_within(most: u64, name: &str, bytes: &[u8]) -> [Option<FileError>; 2
 /// that begins with the name of the file.
 #[track_caller]
 fn assert_too_large(refusal: Option<FileError>, name: &str, limit_mib: u64) {
-    let error = refusal.expect("the file is not read");
+    let error = refusal.expect("the file must be refused");
     assert!(
         matches!(
             error,
@@ -48,7 +49,7 @@ fn assert_too_large(refusal: Option<FileError>, name: &str, limit_mib: u64) {
 }
 
 #[test]
-fn things_without_content_count_and_are_refused_in_one_sentence_with_the_limit() {
+fn many_elements_without_content_exceed_the_memory_limit() {
     for name in [
         "npy-empty-records-hang.npy",
         "npy-empty-record-field-hang.npy",
@@ -67,7 +68,8 @@ fn things_without_content_count_and_are_refused_in_one_sentence_with_the_limit()
 }
 
 #[test]
-fn json_of_any_shape_takes_no_more_memory_than_it_may() {
+fn json_of_any_shape_is_limited_in_memory() {
+    // Lists of 3 MiB of text: parsed, each would take more than the limit of 16 MiB.
     let chain = format!("{}0{}", "{\"\":".repeat(100), "}".repeat(100));
     for item in [chain.as_str(), "{\"\":0}", "[]", "\"\"", "[0]", "0"] {
         let text = format!("[{}]", vec![item; (3 << 20) / (item.len() + 1)].join(","));
@@ -77,20 +79,21 @@ fn json_of_any_shape_takes_no_more_memory_than_it_may() {
     }
 }
 
-#[test]
-fn an_archive_of_many_entries_to_the_same_bytes_is_refused_as_one_that_holds_them_all() {
-    // A file of 4 MiB of spaces, to which the directory of the archive has a hundred entries.
-    let mut bytes = Vec::new();
-    let mut archive = Vec::new();
-    let mut writer = flate2::write::DeflateEncoder::new(&mut bytes, flate2::Compression::best());
-    writer.write_all(&vec![b' '; 4 << 20]).unwrap();
+/// Returns a ZIP archive with 4 MiB of spaces and a directory of a hundred entries that all refer
+/// to them. The fields are those of PKWARE's APPNOTE, sections 4.3.7, 4.3.12 and 4.3.16.
+fn overlapping_archive() -> Vec<u8> {
+    let content = vec![b' '; 4 << 20];
+    let mut packed: Vec<u8> = Vec::new();
+    let mut writer = flate2::write::DeflateEncoder::new(&mut packed, flate2::Compression::best());
+    writer.write_all(&content).unwrap();
     writer.finish().unwrap();
-    let mut sum = flate2::Crc::new();
-    sum.update(&vec![b' '; 4 << 20]);
-    let sizes = [sum.sum(), bytes.len() as u32, 4 << 20]
+    let mut checksum = flate2::Crc::new();
+    checksum.update(&content);
+    let sizes = [checksum.sum(), packed.len() as u32, 4 << 20]
         .map(u32::to_le_bytes)
         .concat();
-    let fields = |name: &str| {
+    // Version 2.0, no flags, deflated, no date; checksum and sizes; length of the name, no extras.
+    let shared_fields = |name: &str| {
         [
             &[20, 0, 0, 0, 8, 0, 0, 0, 0, 0][..],
             &sizes,
@@ -98,48 +101,41 @@ fn an_archive_of_many_entries_to_the_same_bytes_is_refused_as_one_that_holds_the
         ]
         .concat()
     };
-    archive.extend(
-        [
-            b"PK\x03\x04",
-            fields("000.csv").as_slice(),
-            b"000.csv",
-            &bytes,
-        ]
-        .concat(),
-    );
-    let directory = archive.len() as u32;
+    let mut archive: Vec<u8> = Vec::new();
+    archive.extend(b"PK\x03\x04");
+    archive.extend(shared_fields("000.csv"));
+    archive.extend(b"000.csv");
+    archive.extend(&packed);
+    let directory_start = archive.len() as u32;
     for entry in 0..100 {
         let name = format!("{entry:03}.csv");
-        archive.extend(
-            [
-                b"PK\x01\x02\x14\x00",
-                fields(&name).as_slice(),
-                &[0; 14],
-                name.as_bytes(),
-            ]
-            .concat(),
-        );
+        archive.extend(b"PK\x01\x02\x14\x00");
+        archive.extend(shared_fields(&name));
+        // The last four of these bytes are the position of the entry's content: 0 for all.
+        archive.extend([0; 14]);
+        archive.extend(name.as_bytes());
     }
-    let length = archive.len() as u32 - directory;
-    archive.extend(
-        [
-            b"PK\x05\x06",
-            &[0; 4][..],
-            &[100, 0, 100, 0],
-            &length.to_le_bytes(),
-            &directory.to_le_bytes(),
-        ]
-        .concat(),
-    );
+    let directory_length = archive.len() as u32 - directory_start;
+    archive.extend(b"PK\x05\x06");
+    archive.extend([0, 0, 0, 0, 100, 0, 100, 0]);
+    archive.extend(directory_length.to_le_bytes());
+    archive.extend(directory_start.to_le_bytes());
     archive.extend([0, 0]);
-    for refusal in refusals("same.zip", &archive) {
+    archive
+}
+
+#[test]
+fn archive_entries_that_share_their_bytes_each_count_in_full() {
+    for refusal in refusals("same.zip", &overlapping_archive()) {
         assert_too_large(refusal, "same.zip", 64);
     }
 }
 
 #[test]
-fn objects_of_many_members_with_the_names_of_matrices_are_no_work_without_end() {
-    let members: Vec<String> = (0..100_000).map(|at| format!("\"A{at}\":0")).collect();
+fn many_members_named_like_matrices_take_limited_work() {
+    let members: Vec<String> = (0..100_000)
+        .map(|index| format!("\"A{index}\":0"))
+        .collect();
     for refusal in refusals("x.json", format!("{{{}}}", members.join(",")).as_bytes()) {
         let Some(error) = refusal else {
             continue;
@@ -164,7 +160,7 @@ fn objects_of_many_members_with_the_names_of_matrices_are_no_work_without_end() 
 fn a_log_of_too_many_flights_is_refused_with_their_number() {
     let bytes = b"H Product:Blackbox\n".repeat(1001);
     for refusal in refusals("long.bbl", &bytes) {
-        let error = refusal.expect("the file is not read");
+        let error = refusal.expect("the file must be refused");
         assert!(
             matches!(
                 error,
@@ -182,10 +178,12 @@ fn a_log_of_too_many_flights_is_refused_with_their_number() {
 }
 
 #[test]
-fn every_reader_stops_when_it_is_asked_to() {
+fn every_reader_can_be_cancelled() {
     let lines = "0.02,1.5,-2.25,3.125,4\n".repeat(400_000);
     let list = format!("{{\"t\": [{}0]}}", "[0.25,1.5],".repeat(600_000));
-    let members: String = (0..400_000).map(|at| format!("\"A{at}\":[0,1],")).collect();
+    let members: String = (0..400_000)
+        .map(|index| format!("\"A{index}\":[0,1],"))
+        .collect();
     let literal = format!("A = [{}];", "0.25 1.5;\n".repeat(500_000));
     let mut packed = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
     packed.write_all(lines.as_bytes()).unwrap();
@@ -205,14 +203,14 @@ fn every_reader_stops_when_it_is_asked_to() {
         ("array.npy", [head, vec![0; 32_000_000]].concat()),
     ];
     for (name, bytes) in &files {
-        // The flag is set during the reading, after different amounts of memory: the reader must
-        // stop without a result.
+        // The callback sets the flag once this much memory is taken; the reader must then stop
+        // without a result.
         for most in [0, 1 << 20, 4 << 20] {
             let stop = Arc::new(AtomicBool::new(false));
-            let tell = |taken| stop.store(taken >= most, Ordering::Relaxed);
+            let set_stop = |taken| stop.store(taken >= most, Ordering::Relaxed);
             let budget = ReadingBudget::new(1 << 30)
                 .stopped_by(Arc::clone(&stop))
-                .with_memory_callback(&tell);
+                .with_memory_callback(&set_stop);
             let found = [
                 models_of_bytes(bytes, name, &budget).err(),
                 records_of_bytes(bytes, name, &budget).err(),
@@ -223,7 +221,7 @@ fn every_reader_stops_when_it_is_asked_to() {
             );
             assert!(
                 found.iter().all(Option::is_some),
-                "{name}, after {most} bytes"
+                "{name}: not stopped after {most} bytes"
             );
         }
     }
@@ -231,44 +229,72 @@ fn every_reader_stops_when_it_is_asked_to() {
 
 /// Returns an ArduPilot log: message formats, followed by `messages` messages of the same type.
 fn dataflash(messages: u64) -> Vec<u8> {
-    let padded =
-        |text: &str, length: usize| [text.as_bytes(), &vec![0; length - text.len()]].concat();
-    let format = |kind: u8, length: u8, name: &str, letters: &str, names: &str| {
-        [
-            vec![0xa3, 0x95, 128, kind, length],
-            padded(name, 4),
-            padded(letters, 16),
-            padded(names, 64),
-        ]
-        .concat()
-    };
-    let mut bytes = format(128, 89, "FMT", "BBnNZ", "Type,Length,Name,Format,Columns");
-    bytes.extend(format(140, 19, "RATE", "Qff", "TimeUS,R,ROut"));
-    for at in 0..messages {
-        let value = (at as f32 / 50.0).sin().to_le_bytes();
-        bytes.extend(
-            [
-                &[0xa3, 0x95, 140][..],
-                &(2500 * at).to_le_bytes(),
-                &value,
-                &value,
-            ]
-            .concat(),
-        );
+    // Each message begins with two constant bytes and its type.
+    const FORMAT: u8 = 128;
+    const RATE: u8 = 140;
+    let mut bytes: Vec<u8> = Vec::new();
+    // Descriptions of a format: type, length, name, letters of the column types, column names.
+    bytes.extend([0xa3, 0x95, FORMAT, FORMAT, 89]);
+    bytes.extend(padded("FMT", 4));
+    bytes.extend(padded("BBnNZ", 16));
+    bytes.extend(padded("Type,Length,Name,Format,Columns", 64));
+    bytes.extend([0xa3, 0x95, FORMAT, RATE, 19]);
+    bytes.extend(padded("RATE", 4));
+    bytes.extend(padded("Qff", 16));
+    bytes.extend(padded("TimeUS,R,ROut", 64));
+    for index in 0..messages {
+        let value = (index as f32 / 50.0).sin().to_le_bytes();
+        bytes.extend([0xa3, 0x95, RATE]);
+        bytes.extend((2500 * index).to_le_bytes());
+        bytes.extend(value);
+        bytes.extend(value);
     }
     bytes
 }
 
-#[test]
-fn the_reader_of_every_format_ends_at_once_wherever_it_is_stopped() {
-    let data = crate::program_folder().join("tests/data");
-    let of = |name: &str| {
-        (
-            name.rsplit('/').next().unwrap().to_owned(),
-            std::fs::read(data.join(name)).unwrap(),
-        )
+/// Returns the bytes of a text, padded with zeros.
+fn padded(text: &str, length: usize) -> Vec<u8> {
+    let mut bytes = text.as_bytes().to_vec();
+    bytes.resize(length, 0);
+    bytes
+}
+
+struct TestFile {
+    name: String,
+    bytes: Vec<u8>,
+}
+
+impl TestFile {
+    /// Reads a file in `tests/data`.
+    fn read(path: &str) -> Self {
+        let folder = crate::program_folder().join("tests/data");
+        Self {
+            name: path.rsplit('/').next().unwrap().to_owned(),
+            bytes: std::fs::read(folder.join(path)).unwrap(),
+        }
+    }
+}
+
+type Reader = fn(&[u8], &str, &ReadingBudget<'_>) -> Result<(), FileError>;
+
+/// Reads a file and sets the stop flag at call number `stop_at` of the memory callback; returns the
+/// result and the number of calls.
+fn read_and_stop(read: Reader, file: &TestFile, stop_at: usize) -> (Result<(), FileError>, usize) {
+    let stop = Arc::new(AtomicBool::new(false));
+    let calls = Cell::new(0);
+    let count_call = |_| {
+        calls.set(calls.get() + 1);
+        stop.store(calls.get() >= stop_at, Ordering::Relaxed);
     };
-    let mut files: Vec<(String, Vec<u8>)> = [
+    let budget = ReadingBudget::default()
+        .stopped_by(Arc::clone(&stop))
+        .with_memory_callback(&count_call);
+    (read(&file.bytes, &file.name, &budget), calls.get())
+}
+
+#[test]
+fn the_reader_of_every_format_stops_at_once_at_any_point() {
+    let mut files: Vec<TestFile> = [
         "mat/scipy-4.mat",
         "mat/scipy-5.mat",
         "mat/scipy-5-packed.mat",
@@ -283,55 +309,46 @@ fn the_reader_of_every_format_ends_at_once_wherever_it_is_stopped() {
         "logs/two-flights.bbl",
         "small-dataset.json",
     ]
-    .map(of)
+    .map(TestFile::read)
     .into();
-    files.push(("rate.bin".to_owned(), dataflash(2000)));
-    files.push((
-        "records.zip".to_owned(),
-        std::fs::read(crate::program_folder().join("assets/example-records-3-and-10.zip")).unwrap(),
-    ));
-    type Reader = fn(&[u8], &str, &ReadingBudget<'_>) -> Result<(), FileError>;
+    files.push(TestFile {
+        name: "rate.bin".to_owned(),
+        bytes: dataflash(2000),
+    });
+    let archive = crate::program_folder().join("assets/example-records-3-and-10.zip");
+    files.push(TestFile {
+        name: "records.zip".to_owned(),
+        bytes: std::fs::read(archive).unwrap(),
+    });
     let readers: [Reader; 2] = [
         |bytes, name, budget| models_of_bytes(bytes, name, budget).map(drop),
         |bytes, name, budget| records_of_bytes(bytes, name, budget).map(drop),
     ];
-    for ((name, bytes), read) in files
+    for (file, read) in files
         .iter()
         .flat_map(|file| readers.map(|read| (file, read)))
     {
-        // Reads with the flag set at the given call of the callback; returns the result and the
-        // number of calls.
-        let taken = |stopped_at: usize| {
-            let stop = Arc::new(AtomicBool::new(false));
-            let count = Cell::new(0);
-            let tell = |_| {
-                count.set(count.get() + 1);
-                stop.store(count.get() >= stopped_at, Ordering::Relaxed);
-            };
-            let budget = ReadingBudget::default()
-                .stopped_by(Arc::clone(&stop))
-                .with_memory_callback(&tell);
-            (read(bytes, name, &budget), count.get())
-        };
-        let (_, all) = taken(usize::MAX);
-        assert!(all > 0, "{name} is read without a budget");
-        for stopped_at in (1..all).step_by((all / 20).max(1)) {
-            let (outcome, count) = taken(stopped_at);
+        let name = &file.name;
+        let (_, all) = read_and_stop(read, file, usize::MAX);
+        assert!(all > 0, "{name}: the reader never asked for memory");
+        // About twenty points, spread over the whole reading.
+        for stop_at in (1..all).step_by((all / 20).max(1)) {
+            let (outcome, calls) = read_and_stop(read, file, stop_at);
             assert_eq!(
-                count, stopped_at,
-                "{name}: it takes memory after it was stopped"
+                calls, stop_at,
+                "{name}: the reader took memory after it was stopped"
             );
             let error = outcome.err();
             assert!(
                 error.as_ref().is_some_and(FileError::is_stopped),
-                "{name}, stopped at {stopped_at} of {all}: {error:?}"
+                "{name}, stopped at {stop_at} of {all}: {error:?}"
             );
         }
     }
 }
 
 #[test]
-fn a_dataset_and_its_study_are_read_within_a_budget_that_can_be_ended() {
+fn a_dataset_is_read_within_a_budget_and_can_be_cancelled() {
     let path = crate::program_folder().join("tests/data/small-dataset.json");
     let stopped = ReadingBudget::default().stopped_by(Arc::new(true.into()));
     assert!(load_any(&path, &stopped).is_err_and(|error| error.is_stopped()));
@@ -341,6 +358,7 @@ fn a_dataset_and_its_study_are_read_within_a_budget_that_can_be_ended() {
     assert!(load_any(&path, &ReadingBudget::default()).is_ok());
 }
 
+/// Progress of a folder that is not shown.
 struct Silent;
 
 impl FolderProgress for Silent {
@@ -349,8 +367,7 @@ impl FolderProgress for Silent {
 
 #[cfg(unix)]
 #[test]
-fn a_named_pipe_is_skipped_with_a_word_in_a_folder_and_refused_before_it_is_read_where_it_is_given()
-{
+fn a_named_pipe_is_skipped_in_a_folder_and_refused_as_an_input() {
     let folder = tempfile::tempdir().unwrap();
     let pipe = folder.path().join("p.csv");
     assert!(

@@ -1,5 +1,5 @@
-//! All tests of numbers and files outside the source files, as one program, which does not depend
-//! on the window.
+//! Integration tests of numbers and files, linked into one program that does not depend on the
+//! window.
 
 use std::path::PathBuf;
 use std::sync::LazyLock;
@@ -17,8 +17,8 @@ mod foreign_files;
 mod fuzz;
 mod hostile_files;
 mod identification;
-mod made_up;
 mod optimiser;
+mod synthetic;
 
 /// Returns the root folder of the repository, which contains the data of all tests.
 fn program_folder() -> PathBuf {
@@ -28,18 +28,18 @@ fn program_folder() -> PathBuf {
 /// Returns the archive with the flight records of the example.
 fn records_archive() -> Vec<u8> {
     std::fs::read(program_folder().join("assets/example-records.zip"))
-        .expect("the archive is there")
+        .expect("the archive of the example's records can be read")
 }
 
 /// The embedded example, read once.
 static EXAMPLE: LazyLock<LoadedDataset> =
-    LazyLock::new(|| embedded_example().expect("the embedded example is a dataset"));
+    LazyLock::new(|| embedded_example().expect("the embedded example is a valid dataset"));
 
 /// Dataset for which independent code computed the reference values: the example's physics models,
 /// and three identified models per condition that were not identified by this program.
 static REFERENCE_DATASET: LazyLock<LoadedDataset> = LazyLock::new(|| {
     let path = program_folder().join("tests/data/reference/example-dataset.json.gz");
-    load_dataset(&path).expect("it is a dataset")
+    load_dataset(&path).expect("the reference file is a valid dataset")
 });
 
 /// Executor on all cores of the machine; tasks are started in their order.
@@ -48,9 +48,9 @@ struct EveryCore;
 impl Executor for EveryCore {
     fn carry_out(&self, tasks: Vec<Task<'_>>) {
         rayon::scope_fifo(|scope| {
-            tasks
-                .into_iter()
-                .for_each(|task| scope.spawn_fifo(move |_| task()))
+            for task in tasks {
+                scope.spawn_fifo(move |_| task());
+            }
         });
     }
 }

@@ -23,7 +23,7 @@ use super::{
 };
 use crate::schedule::Airspeeds;
 
-/// Reference results, computed independently with numpy.
+/// Reference results, computed by independent numpy code.
 static REFERENCE: LazyLock<Value> = LazyLock::new(|| {
     serde_json::from_str(include_str!("../../../../tests/data/reference/mixing.json")).unwrap()
 });
@@ -98,7 +98,7 @@ fn fit(problem: &CouplingProblem) -> CouplingFit {
     fit_couplings(problem, &Sequential, &Unobserved).unwrap()
 }
 
-/// Couplings that do not depend on airspeed.
+/// Couplings that do not depend on airspeed: mixing M (m x m) and feedback K (m x p).
 fn constant(mixing: &DMatrix<f64>, feedback: &DMatrix<f64>) -> CouplingMatrices {
     let (inputs, outputs) = feedback.shape();
     let mut unknowns = Vec::new();
@@ -188,7 +188,7 @@ fn many_channels(channels: usize, conditions: usize, points: usize) -> CouplingP
 }
 
 #[test]
-#[ignore = "figures for the release build: docs/performance.md"]
+#[ignore = "measures the times of docs/performance.md, in a release build"]
 fn fits_of_many_channels_and_conditions_solve_their_equations() {
     for (channels, conditions) in [(5, 11), (20, 4), (32, 4), (4, 2000)] {
         let problem = many_channels(channels, conditions, 200);
@@ -197,10 +197,11 @@ fn fits_of_many_channels_and_conditions_solve_their_equations() {
         let took_s = started.elapsed().as_secs_f64();
         let residual = found.residual;
         println!(
-            "{channels} x {channels}, {conditions} conditions, one core: {took_s:.2} s; residual {residual:.1e}"
+            "{channels} x {channels}, {conditions} conditions, one core: {took_s:.2} s; \
+             residual {residual:.1e}"
         );
-        // Tolerance: a few hundred rounding errors of the largest right-hand side. The time is
-        // printed, not compared.
+        // A few hundred rounding errors of the largest right-hand side. The time is printed, not
+        // compared.
         assert!(residual < 1e-12, "{residual:e}");
     }
 }

@@ -23,7 +23,7 @@ use super::{
     PhysicsProblem, diagnose,
 };
 
-/// Reference results, computed independently with numpy.
+/// Reference results, computed by independent numpy code.
 static REFERENCE: LazyLock<Value> = LazyLock::new(|| {
     serde_json::from_str(include_str!(
         "../../../../tests/data/reference/physics.json"
@@ -124,18 +124,18 @@ fn toy_conditions() -> Vec<ToyCondition> {
     let models = REFERENCE["toy"]["models"].as_array().unwrap();
     models
         .iter()
-        .map(|model| {
-            let runs_of = |name: &str| -> Vec<(f64, StateSpace)> {
-                let runs = model["runs"].as_array().unwrap().iter();
-                runs.filter(|run| run["parameter"] == name)
-                    .map(|run| (run["z"].as_f64().unwrap(), state_space(&run["matrices"])))
-                    .collect()
-            };
-            ToyCondition {
-                base: state_space(&model["base"]),
-                runs: vec![runs_of("a"), runs_of("b")],
-            }
+        .map(|model| ToyCondition {
+            base: state_space(&model["base"]),
+            runs: vec![read_runs(model, "a"), read_runs(model, "b")],
         })
+        .collect()
+}
+
+/// Reads the runs of a parameter: their steps and models.
+fn read_runs(model: &Value, parameter: &str) -> Vec<(f64, StateSpace)> {
+    let runs = model["runs"].as_array().unwrap().iter();
+    runs.filter(|run| run["parameter"] == parameter)
+        .map(|run| (run["z"].as_f64().unwrap(), state_space(&run["matrices"])))
         .collect()
 }
 

@@ -79,7 +79,7 @@ fn value(metric: Result<Metric, NoMetric>) -> f64 {
 }
 
 #[test]
-fn bandwidths_and_phase_delays_are_known() {
+fn bandwidths_and_phase_delays_equal_the_reference() {
     let answers = answers();
     let cases = answers["bandwidth"].as_array().unwrap();
     for (case, attitude) in cases.iter().zip(attitudes()) {
@@ -97,10 +97,11 @@ fn bandwidths_and_phase_delays_are_known() {
             let expected = number(case, name);
             assert!(
                 (found - expected).abs() < 1e-9 * expected,
-                "{} {name}: {found} {expected}",
+                "{} {name}: {found} instead of {expected}",
                 case["name"]
             );
         }
+        // A phase that departs by more than 10 deg from a straight line is fitted by least squares.
         let is_straight = number(case, "departure_deg") <= 10.0;
         assert_eq!(line.is_straight(), is_straight);
         let phase_delay_s = if is_straight {
@@ -123,7 +124,7 @@ fn bandwidths_and_phase_delays_are_known() {
 }
 
 #[test]
-fn the_gain_margin_limits_a_rate_command_only() {
+fn the_gain_margin_limits_the_bandwidth_of_rate_command_only() {
     let [_, lightly_damped, ..] = attitudes();
     let rate = rate_bandwidth(lightly_damped, &settings(CommandType::Rate));
     let attitude = rate_bandwidth(lightly_damped, &settings(CommandType::Attitude));
@@ -134,7 +135,7 @@ fn the_gain_margin_limits_a_rate_command_only() {
     );
     assert!(
         attitude.is_gain_limited(),
-        "the standard warns about it for every response type"
+        "the gain limit is reported for every response type"
     );
 }
 
@@ -189,9 +190,10 @@ fn a_phase_that_never_falls_through_a_level_has_no_crossing() {
     assert_eq!(found.phase_line, None);
     assert!(
         (value(found.omega_bw) - 1.0).abs() < 1e-10,
-        "45 deg margin at the pole"
+        "the pole at 1 rad/s has a phase margin of 45 deg"
     );
     assert_eq!(found.rule, Some(BandwidthRule::PhaseGainUnknown));
+    // A double integrator with a delay is below -135 deg at every frequency.
     let late = rate_bandwidth(
         |s| (-0.05 * s).exp() / (s * s),
         &settings(CommandType::Rate),
@@ -248,7 +250,7 @@ fn a_slow_aircraft_crosses_below_the_band() {
 }
 
 #[test]
-fn a_reversed_sign_is_suspected_from_the_phase() {
+fn a_reversed_sign_is_recognised_from_the_phase() {
     let [.., short] = attitudes();
     let [plain, reversed] = [1.0, -1.0].map(|sign| {
         let response = at_frequencies(|s| sign * short(s));
@@ -258,6 +260,8 @@ fn a_reversed_sign_is_suspected_from_the_phase() {
             .reversed_phase_deg()
     });
     assert_eq!(plain, None);
+    // The phase at 0.5 rad/s, of an integrator, a delay of 0.02 s and a mode of 4 rad/s, is -90 -
+    // 0.6 - 10.1 = -100.7 deg; the opposite sign adds 180 deg.
     assert!((reversed.unwrap() - 79.0).abs() < 2.0);
 }
 
@@ -278,7 +282,7 @@ fn a_flat_magnitude_has_no_gain_margin_and_no_bandwidth() {
 }
 
 #[test]
-fn values_above_the_band_are_marked_or_with_leads_refused() {
+fn values_above_the_band_are_marked_and_refused_with_leads() {
     // omega_180 is 8 rad/s: twice that, 16 rad/s, is above the band.
     let attitude = |s: Complex<f64>| (-PI / 16.0 * s).exp() / s;
     let marked = rate_bandwidth(attitude, &settings(CommandType::Rate));
@@ -336,11 +340,11 @@ fn measured_bandwidth(top: f64) -> Bandwidth {
 
 #[test]
 fn a_measurement_is_never_extrapolated() {
-    // omega_180 is 3.79 rad/s.
+    // Reference values of this case: omega_180 is 3.79 rad/s, the phase delay 0.122 s.
     let complete = measured_bandwidth(12.0);
     assert!(
         (value(complete.omega_180) / 3.7928490126513252 - 1.0).abs() < 1e-3,
-        "the resolution of 60 points"
+        "differs by more than the resolution of 60 points"
     );
     assert!((value(complete.phase_delay_s) / 0.12206651443391653 - 1.0).abs() < 1e-2);
     let short = measured_bandwidth(6.0);
@@ -365,7 +369,7 @@ fn a_zero_response_is_refused() {
     let frequencies = search_frequencies(band());
     let refused = AttitudeResponse::new(&zero, AttitudeOutput::Rate, &frequencies, band()).err();
     let Some(AttitudeResponseError::NoResponse { from, to }) = refused else {
-        panic!("a zero response is used")
+        panic!("a zero response is not refused")
     };
     assert!((from - 0.125).abs() < 1e-12 && (to - 48.0).abs() < 1e-9);
     assert!(AttitudeResponse::new(&zero, AttitudeOutput::Rate, &[], band()).is_err());
@@ -442,7 +446,7 @@ fn crossings(found: &Bandwidth) -> [Metric; 3] {
 }
 
 #[test]
-fn phase_deviations_agree_with_turning_the_response() {
+fn deviations_from_phase_equal_the_shifts_by_a_turned_response() {
     let sd_deg = 0.3;
     let bands = uniform_bands(log_spaced(0.1, 48.0, 400), 0.0, sd_deg);
     let low = crossings(&turned_bandwidth(-sd_deg, &bands));
@@ -457,6 +461,7 @@ fn phase_deviations_agree_with_turning_the_response() {
             "{deviation} {half_change}"
         );
     }
+    // Phase delay = (phase difference) / (2 omega_180), of two independent phases.
     let twice = 2.0 * value(middle.omega_180);
     let expected = 2.0_f64.sqrt() * sd_deg.to_radians() / twice;
     let deviation = middle.phase_delay_s.unwrap().deviation.unwrap();
@@ -464,7 +469,7 @@ fn phase_deviations_agree_with_turning_the_response() {
 }
 
 #[test]
-fn magnitude_deviations_move_the_gain_crossing_only() {
+fn magnitude_deviations_affect_only_the_gain_crossing() {
     let bands = uniform_bands(log_spaced(0.1, 48.0, 400), 0.05, 0.0);
     let found = turned_bandwidth(0.0, &bands);
     assert_eq!(found.omega_180.unwrap().deviation, Some(0.0));
@@ -486,7 +491,7 @@ fn a_band_that_ends_before_a_crossing_gives_no_deviation_there() {
 }
 
 #[test]
-fn a_substitution_bar_has_the_spread_and_counts_missing_values() {
+fn a_substitution_bar_has_the_mean_square_deviation_and_counts_missing_values() {
     let bar = substitution_bar(2.0, &[Some(2.3), Some(1.6), None], &[]);
     assert_eq!((bar.left_out, bar.identification), (1, None));
     assert!((bar.variance() - (0.09 + 0.16) / 2.0).abs() < 1e-15);

@@ -19,7 +19,7 @@ use gdcm_words::caution::caution_text;
 use gdcm_words::derivation::{ExplainTarget, derivation};
 
 use super::*;
-use crate::made_up::two_lags;
+use crate::synthetic::two_lags;
 
 /// Id of the only condition, or of the first in [`NEAR_AIRSPEEDS`].
 const CONDITION: ConditionId = ConditionId(1);

@@ -43,7 +43,7 @@ use gdcm_model::dataset::{BundleKind, ModelId};
 use gdcm_study::decisions::signs::SignRole;
 use gdcm_study::{Edit, Study};
 
-use crate::made_up::tries;
+use crate::synthetic::tries;
 
 /// Memory limit \[bytes\] of the reading budget in these tests.
 const MOST_MEMORY: u64 = 16 << 20;

@@ -1,18 +1,20 @@
-//! Frequency bands that the records do not excite: the messages, and the proposed band.
+//! Bands that the records do not excite at one end: the cautions, and the proposed band.
 
 use gdcm_model::executor::Sequential;
 use gdcm_model::progress::Unobserved;
 use gdcm_sysid::identification::identify::identify;
-use gdcm_sysid::identification::{IdentificationCaution, IdentificationError, Options};
+use gdcm_sysid::identification::{
+    IdentificationCaution, IdentificationError, Options, ResponseEstimate,
+};
 
-use super::common::noisy_measured;
-use super::whole::quick;
-use crate::made_up::{Flight, Gusts, stable_aircraft};
+use super::common::noisy_response;
+use super::whole::quick_options;
+use crate::synthetic::{Flight, Gusts, stable_aircraft};
 
 #[test]
-fn a_band_beyond_the_sweeps_is_offered_up_to_their_end() {
+fn a_band_wider_than_the_sweeps_is_proposed_up_to_their_end() {
     // The sweeps end at 8.06 rad/s, where the window of a point extends 1.6 rad/s to either side.
-    let records = Flight::of(
+    let records = Flight::new(
         stable_aircraft(),
         Gusts {
             states: 0.03,
@@ -22,7 +24,7 @@ fn a_band_beyond_the_sweeps_is_offered_up_to_their_end() {
     .records(21, 4);
     let wide = Options {
         band: [0.6, 24.0],
-        ..quick((2, 2))
+        ..quick_options((2, 2))
     };
     let found = identify(&records, &wide, &Sequential, &Unobserved).unwrap();
     let shown = found.cautions.iter().find_map(|caution| match caution {
@@ -47,76 +49,80 @@ fn a_band_beyond_the_sweeps_is_offered_up_to_their_end() {
         &Unobserved,
     )
     .unwrap();
-    let is_of_band = |caution: &IdentificationCaution| {
-        matches!(caution, IdentificationCaution::BandNotShown { .. })
-    };
     assert!(
-        !again.cautions.iter().any(is_of_band),
-        "{:?}",
+        !again
+            .cautions
+            .iter()
+            .any(|caution| matches!(caution, IdentificationCaution::BandNotShown { .. })),
+        "the proposed band is not excited either: {:?}",
         again.cautions
     );
 }
 
+/// Returns a measured response whose partial coherence is 0.3, too low to show anything, at the
+/// frequencies \[rad/s\] that `is_hidden` selects.
+fn with_low_coherence(
+    measured: &ResponseEstimate,
+    is_hidden: impl Fn(f64) -> bool,
+) -> ResponseEstimate {
+    let mut measured = measured.clone();
+    for point in &mut measured.points {
+        if is_hidden(point.omega) {
+            point.partial_coherence.fill(0.3);
+        }
+    }
+    measured
+}
+
 #[test]
-fn the_ends_of_a_band_count_only_where_a_fifth_of_it_shows_nothing() {
-    let whole = noisy_measured();
+fn a_narrower_band_is_proposed_only_if_a_fifth_of_it_at_an_end_has_low_coherence() {
+    let whole = noisy_response();
     let band = [0.5, 6.0];
     assert_eq!(
         whole.shown_band(band),
         None,
-        "every input was moved over all of it"
+        "every input is excited over the whole band"
     );
-    let without = |hidden: &dyn Fn(f64) -> bool| {
-        let mut measured = whole.clone();
-        let hidden_points = measured
-            .points
-            .iter_mut()
-            .filter(|point| hidden(point.omega));
-        hidden_points.for_each(|point| point.partial_coherence.fill(0.3));
-        measured
-    };
     // A fifth of the band on the logarithmic axis: a factor of 12^0.2 = 1.64.
-    let [low, high] = without(&|omega| omega > 3.0).shown_band(band).unwrap();
+    let [low, high] = with_low_coherence(&whole, |omega| omega > 3.0)
+        .shown_band(band)
+        .unwrap();
     assert!(low == 0.5 && (2.5..=3.0).contains(&high), "{high}");
-    let [low, high] = without(&|omega| omega < 1.0).shown_band(band).unwrap();
+    let [low, high] = with_low_coherence(&whole, |omega| omega < 1.0)
+        .shown_band(band)
+        .unwrap();
     assert!((1.0..=1.2).contains(&low) && high == 6.0, "{low}");
     assert_eq!(
-        without(&|omega| omega > 4.5).shown_band(band),
+        with_low_coherence(&whole, |omega| omega > 4.5).shown_band(band),
         None,
-        "less than a fifth"
+        "less than a fifth of the band is hidden"
     );
     assert_eq!(
-        without(&|omega| omega > 1.0 && omega < 3.0).shown_band(band),
+        with_low_coherence(&whole, |omega| omega > 1.0 && omega < 3.0).shown_band(band),
         None,
-        "the ends are shown"
+        "the hidden frequencies are not at an end"
     );
     assert_eq!(
-        without(&|_| true).shown_band(band),
+        with_low_coherence(&whole, |_| true).shown_band(band),
         None,
-        "there is no other band to offer"
+        "no band is left to propose"
     );
 }
 
 #[test]
-fn records_too_short_for_the_lower_end_of_the_band_say_which_end_they_would_do_for() {
-    // 11 s are 1.05 periods of 0.6 rad/s, and 1.5 of 0.86 rad/s.
+fn records_too_short_for_a_band_are_refused_with_the_lower_end_they_suffice_for() {
+    // At least 1.5 periods of the lower end are required, and 5 are recommended. 11 s are 1.05
+    // periods of 0.6 rad/s, and 1.5 of 0.86 rad/s.
     let short = Flight {
         length_s: 11.0,
-        ..Flight::of(stable_aircraft(), Gusts::light())
+        ..Flight::new(stable_aircraft(), Gusts::light())
     };
     let records = short.records(22, 6);
-    let of_band = |band| {
-        identify(
-            &records,
-            &Options {
-                band,
-                ..quick((2, 2))
-            },
-            &Sequential,
-            &Unobserved,
-        )
+    let in_band = |band| Options {
+        band,
+        ..quick_options((2, 2))
     };
-    let refused = of_band([0.6, 6.0]).unwrap_err();
+    let refused = identify(&records, &in_band([0.6, 6.0]), &Sequential, &Unobserved).unwrap_err();
     let IdentificationError::TooShort {
         enough,
         needed_s,
@@ -135,12 +141,14 @@ fn records_too_short_for_the_lower_end_of_the_band_say_which_end_they_would_do_f
     for (found, expected) in expected {
         assert!((found - expected).abs() < 1e-9, "{found}, not {expected}");
     }
-    let offered = of_band([enough * 1.001, 6.0]).unwrap();
-    let is_short =
-        |caution: &IdentificationCaution| matches!(caution, IdentificationCaution::Short { .. });
+    let sufficient = in_band([enough * 1.001, 6.0]);
+    let found = identify(&records, &sufficient, &Sequential, &Unobserved).unwrap();
     assert!(
-        offered.cautions.iter().any(is_short),
+        found
+            .cautions
+            .iter()
+            .any(|caution| matches!(caution, IdentificationCaution::Short { .. })),
         "{:?}",
-        offered.cautions
+        found.cautions
     );
 }

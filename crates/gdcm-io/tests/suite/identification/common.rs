@@ -1,4 +1,5 @@
-//! Reference values for M14 (source: independent numpy code), and small synthetic systems.
+//! Reference values for M14, computed by independent numpy code, in
+//! `tests/data/identification-known-answers.json`, and small synthetic systems.
 
 use std::sync::Mutex;
 
@@ -15,32 +16,36 @@ use gdcm_sysid::spectra::local_polynomial::local_polynomial;
 use gdcm_sysid::spectra::scales::Scales;
 use gdcm_sysid::spectra::spectrum::{Spectrum, spectra};
 
-/// Executor with a fixed number of threads, which starts with the last task.
+/// Highest spectral line \[rad/s\] of a measured response in the band from 0.6 to 6 rad/s: the
+/// likelihood uses lines up to 4/3 of the upper end, and the windows of the local polynomials
+/// extend to 1.3 times the highest of them.
+pub const HIGHEST_LINE: f64 = 10.4;
+
+/// Executor with a fixed number of threads; the last task is started first.
 pub struct Threads(pub usize);
 
 impl Executor for Threads {
     fn carry_out(&self, tasks: Vec<Task<'_>>) {
-        let left = Mutex::new(tasks);
-        let next = || left.lock().expect("no piece of work holds the lock").pop();
-        let work = || {
-            while let Some(task) = next() {
-                task();
-            }
-        };
+        let remaining = Mutex::new(tasks);
+        let next_task = || remaining.lock().expect("no thread panicked").pop();
         std::thread::scope(|scope| {
             for _ in 0..self.0 {
-                scope.spawn(work);
+                scope.spawn(|| {
+                    while let Some(task) = next_task() {
+                        task();
+                    }
+                });
             }
         });
     }
 }
 
-/// Returns the reference values.
-pub fn known() -> Value {
+/// Returns the reference values of all cases.
+pub fn known_answers() -> Value {
     serde_json::from_str(include_str!(
         "../../../../../tests/data/identification-known-answers.json"
     ))
-    .expect("the known answers are JSON")
+    .expect("the file of known answers is valid JSON")
 }
 
 /// Returns a list of numbers; null becomes NaN.
@@ -70,28 +75,26 @@ pub fn complex(value: &Value) -> DMatrix<Complex<f64>> {
 }
 
 /// Returns the first `count` records of the case `noisy` as segments.
-pub fn noisy(known: &Value, count: usize) -> Vec<Segment> {
+pub fn noisy_segments(known: &Value, count: usize) -> Vec<Segment> {
     let records = known["noisy"]["records"].as_array().expect("records");
-    let segment = |(record, value): (usize, &Value)| Segment {
-        record,
-        start_s: 0.0,
-        sample_time_s: value["dt"].as_f64().expect("a sample time"),
-        inputs: matrix(&value["u"]),
-        outputs: matrix(&value["y"]),
-    };
-    records
-        .iter()
-        .take(count)
-        .enumerate()
-        .map(segment)
-        .collect()
+    let mut segments = Vec::new();
+    for (record, value) in records.iter().take(count).enumerate() {
+        segments.push(Segment {
+            record,
+            start_s: 0.0,
+            sample_time_s: value["dt"].as_f64().expect("a sample time"),
+            inputs: matrix(&value["u"]),
+            outputs: matrix(&value["y"]),
+        });
+    }
+    segments
 }
 
-/// Returns the spectra of the case `noisy` in scaled units, up to 1.3 times the upper end `w_hi` of
-/// its band.
+/// Returns the spectra of the records of the case `noisy` used for identification, in scaled units,
+/// up to [`HIGHEST_LINE`].
 pub fn noisy_spectra() -> Vec<Spectrum> {
-    let segments = noisy(&known(), 4);
-    let scales = Scales::from_segments(&segments).expect("its channels move");
+    let segments = noisy_segments(&known_answers(), 4);
+    let scales = Scales::from_segments(&segments).expect("all channels vary");
     let scaled: Vec<_> = segments
         .iter()
         .map(|segment| scales.scaled(segment))
@@ -100,9 +103,9 @@ pub fn noisy_spectra() -> Vec<Spectrum> {
 }
 
 /// Returns the measured response of the case `noisy` in scaled units.
-pub fn noisy_measured() -> ResponseEstimate {
+pub fn noisy_response() -> ResponseEstimate {
     local_polynomial(&noisy_spectra(), &log_spaced(0.3, 8.0, 40), &Sequential)
-        .expect("its records are long enough")
+        .expect("the records are long enough")
 }
 
 /// Returns the response of a model at a frequency \[rad/s\].
@@ -114,13 +117,13 @@ pub fn response(model: &StateSpace, omega: f64) -> DMatrix<Complex<f64>> {
 }
 
 /// Returns the matrices of a model.
-pub fn space(model: &Model) -> &StateSpace {
-    model.state_space().expect("it has matrices")
+pub fn state_space(model: &Model) -> &StateSpace {
+    model.state_space().expect("the model has matrices")
 }
 
 /// Returns the synthetic system of the case `drop_fast` without its fast mode.
 pub fn slow_system() -> StateSpace {
-    let known = known();
+    let known = known_answers();
     let [a, b, c, d] = ["A", "B", "C", "D"].map(|key| matrix(&known["drop_fast"][key]));
     StateSpace::new(
         a.view((0, 0), (4, 4)).into(),
@@ -128,10 +131,11 @@ pub fn slow_system() -> StateSpace {
         c.columns(0, 4).into(),
         d,
     )
-    .expect("it is whole")
+    .expect("the shapes of the matrices agree")
 }
 
-/// Returns pseudo-random numbers between -1 and 1; reproducible for a given seed.
+/// Returns pseudo-random numbers, uniform between -1 and 1 (xorshift); reproducible for a given
+/// seed.
 pub fn noise(seed: u64, count: usize) -> Vec<f64> {
     let mut state = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(1);
     let mut next = || {

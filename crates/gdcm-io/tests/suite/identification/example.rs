@@ -1,4 +1,4 @@
-//! The models of the embedded example, identified again from its flight records.
+//! The identified models of the embedded example are reproduced from its flight records.
 
 use std::sync::LazyLock;
 
@@ -11,7 +11,7 @@ use gdcm_study::jobs::identification_jobs::IdentificationRequest;
 use gdcm_sysid::identification::{Identification, Preparation};
 use gdcm_sysid::records::{LaidOutRecord, RecordChannels, RecordTable, TimeSettings};
 
-use super::common::{response, space};
+use super::common::{response, state_space};
 use crate::EXAMPLE;
 
 static RECORDS: LazyLock<Vec<RecordTable>> = LazyLock::new(|| {
@@ -21,7 +21,7 @@ static RECORDS: LazyLock<Vec<RecordTable>> = LazyLock::new(|| {
         "example-records.zip",
         &ReadingBudget::new(1 << 30),
     )
-    .expect("the archive is whole")
+    .expect("the archive of records can be read")
     .tables
 });
 
@@ -30,30 +30,27 @@ static RECORDS: LazyLock<Vec<RecordTable>> = LazyLock::new(|| {
 fn identified(id: ConditionId) -> Identification {
     let dataset = &EXAMPLE.dataset;
     let channels = RecordChannels::of_dataset(dataset).of_named_records();
-    let is_of_condition = |record: &LaidOutRecord| {
-        record.guess.condition_of(dataset) == Some(id) && record.problems.is_empty()
-    };
-    let laid_out = |table: &RecordTable| {
-        LaidOutRecord::proposed(table.clone(), &channels, &TimeSettings::default()).0
-    };
-    let records: Vec<LaidOutRecord> = RECORDS
-        .iter()
-        .map(laid_out)
-        .filter(is_of_condition)
-        .collect();
+    let mut records: Vec<LaidOutRecord> = Vec::new();
+    for table in RECORDS.iter() {
+        let record = LaidOutRecord::proposed(table.clone(), &channels, &TimeSettings::default()).0;
+        if record.guess.condition_of(dataset) == Some(id) && record.problems.is_empty() {
+            records.push(record);
+        }
+    }
     let (inputs, outputs) = dataset.input_and_output_names();
     let preparation = Preparation::new(&borrowed(&inputs), &borrowed(&outputs));
     let band = dataset.band();
     let request =
         IdentificationRequest::from_used(records.iter(), preparation, [band.min(), band.max()])
             .unwrap();
+    // Each condition was flown in nine records, of which one is for validation.
     assert_eq!(
         (request.records.len(), request.options.held_out.len()),
         (9, 1)
     );
     request
         .identify(&Sequential, &Unobserved)
-        .expect("the example's flights are good")
+        .expect("the example's records can be identified")
 }
 
 fn borrowed(names: &[String]) -> Vec<&str> {
@@ -64,7 +61,10 @@ fn borrowed(names: &[String]) -> Vec<&str> {
 /// and all responses, in standard deviations of magnitude and phase from the bands of the
 /// recommended model.
 fn deviation(found: &Model, recommended: &Model) -> f64 {
-    let bands = recommended.bands.as_ref().expect("it has bands");
+    let bands = recommended
+        .bands
+        .as_ref()
+        .expect("the recommended model has bands");
     let band = EXAMPLE.dataset.band();
     let inside = bands
         .omega()
@@ -74,8 +74,8 @@ fn deviation(found: &Model, recommended: &Model) -> f64 {
     let mut sum = 0.0;
     let mut count = 0.0;
     for (at, omega) in inside {
-        let found = response(space(found), *omega);
-        let known = response(space(recommended), *omega);
+        let found = response(state_space(found), *omega);
+        let known = response(state_space(recommended), *omega);
         for (Pair { output, input }, sd_db) in bands.sd_db().iter() {
             let ratio = (found[(output, input)] / known[(output, input)]).ln();
             let db = 20.0 * std::f64::consts::LOG10_E * ratio.re;
@@ -88,19 +88,22 @@ fn deviation(found: &Model, recommended: &Model) -> f64 {
     (sum / count).sqrt()
 }
 
-fn assert_models_come_again(id: i64) {
+fn assert_models_are_reproduced(id: i64) {
     let id = ConditionId(id);
     let found = identified(id);
     let held_out = found
         .held_out_cost
         .expect("the validation record is held out");
-    // The held-out record is the decisive test of a model (M14.4).
+    // The held-out record is the decisive test of a model (M14.4). Costs are per degree of freedom.
     assert!(
         held_out <= 1.15 * found.cost,
         "held out {held_out}, fitted {}",
         found.cost
     );
-    let condition = EXAMPLE.dataset.condition(id).expect("the example has it");
+    let condition = EXAMPLE
+        .dataset
+        .condition(id)
+        .expect("the example has this condition");
     let bundle = condition.bundle(BundleKind::Identified);
     // If two orders fit equally well, rounding on another processor may select the other order. The
     // variance of the bands is twice that of the fit plus twice the square of the difference
@@ -114,7 +117,7 @@ fn assert_models_come_again(id: i64) {
     let deviation = deviation(&found.refined, recommended);
     assert!(
         deviation <= limit,
-        "{} of {}: {deviation} standard deviations",
+        "{} deviates from {} by {deviation} standard deviations",
         found.refined.name,
         recommended.name
     );
@@ -124,7 +127,7 @@ fn assert_models_come_again(id: i64) {
         .expect("CT-PBSID without refinement");
     assert!(
         !is_same || unrefined.name == found.unrefined.name,
-        "{} of {}",
+        "{} instead of {}",
         found.unrefined.name,
         unrefined.name
     );
@@ -144,35 +147,35 @@ fn assert_models_come_again(id: i64) {
 }
 
 /// Defines a test for each condition, so that the tests can run in parallel.
-macro_rules! the_records_give_the_models_again {
+macro_rules! reproduction_tests {
     ($($(#[$ignored:meta])? $name:ident: $id:literal),*) => {$(
         #[test]
         $(#[$ignored])?
         fn $name() {
-            assert_models_come_again($id);
+            assert_models_are_reproduced($id);
         }
     )*};
 }
 
-the_records_give_the_models_again!(
+reproduction_tests!(
     #[ignore = "two conditions are enough by default; all take two minutes"]
-    the_records_of_condition_1_give_its_models_again: 1,
+    the_records_of_condition_1_reproduce_its_models: 1,
     #[ignore = "two conditions are enough by default; all take two minutes"]
-    the_records_of_condition_2_give_its_models_again: 2,
-    the_records_of_condition_3_give_its_models_again: 3,
+    the_records_of_condition_2_reproduce_its_models: 2,
+    the_records_of_condition_3_reproduce_its_models: 3,
     #[ignore = "two conditions are enough by default; all take two minutes"]
-    the_records_of_condition_4_give_its_models_again: 4,
+    the_records_of_condition_4_reproduce_its_models: 4,
     #[ignore = "two conditions are enough by default; all take two minutes"]
-    the_records_of_condition_5_give_its_models_again: 5,
+    the_records_of_condition_5_reproduce_its_models: 5,
     #[ignore = "two conditions are enough by default; all take two minutes"]
-    the_records_of_condition_6_give_its_models_again: 6,
+    the_records_of_condition_6_reproduce_its_models: 6,
     #[ignore = "two conditions are enough by default; all take two minutes"]
-    the_records_of_condition_7_give_its_models_again: 7,
+    the_records_of_condition_7_reproduce_its_models: 7,
     #[ignore = "two conditions are enough by default; all take two minutes"]
-    the_records_of_condition_8_give_its_models_again: 8,
+    the_records_of_condition_8_reproduce_its_models: 8,
     #[ignore = "two conditions are enough by default; all take two minutes"]
-    the_records_of_condition_9_give_its_models_again: 9,
-    the_records_of_condition_10_give_its_models_again: 10,
+    the_records_of_condition_9_reproduce_its_models: 9,
+    the_records_of_condition_10_reproduce_its_models: 10,
     #[ignore = "two conditions are enough by default; all take two minutes"]
-    the_records_of_condition_11_give_its_models_again: 11
+    the_records_of_condition_11_reproduce_its_models: 11
 );

@@ -8,6 +8,7 @@ use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::executor::Sequential;
 use gdcm_model::response::frequency_grid::log_spaced;
 use gdcm_model::simulation::{FirstOrderHold, LowPass, Segment};
+use gdcm_sysid::identification::ResponseEstimate;
 use gdcm_sysid::likelihood::noise_covariance::NoiseCovariance;
 use gdcm_sysid::spectra::cut_off::CutOff;
 use gdcm_sysid::spectra::local_polynomial::local_polynomial;
@@ -16,14 +17,15 @@ use gdcm_sysid::spectra::scales::{Scales, ScalingError};
 use gdcm_sysid::spectra::spectrum::{Spectrum, spectra};
 
 use super::common::{
-    Threads, complex, known, list, matrix, noise, noisy, noisy_spectra, response, slow_system,
+    HIGHEST_LINE, Threads, complex, known_answers, list, matrix, noise, noisy_segments,
+    noisy_spectra, response, slow_system,
 };
-use crate::made_up::tries;
+use crate::synthetic::tries;
 
 #[test]
-fn scales_are_those_of_the_known_answer() {
-    let known = known();
-    let scales = Scales::from_segments(&noisy(&known, 4)).unwrap();
+fn channel_scales_equal_the_reference() {
+    let known = known_answers();
+    let scales = Scales::from_segments(&noisy_segments(&known, 4)).unwrap();
     let expected = &known["noisy"]["scales"];
     for (scale, expected) in scales
         .inputs
@@ -31,13 +33,16 @@ fn scales_are_those_of_the_known_answer() {
         .chain(&scales.outputs)
         .zip(list(&expected["u"]).iter().chain(&list(&expected["y"])))
     {
-        assert!((scale - expected).abs() < 1e-9, "{scale} {expected}");
+        assert!(
+            (scale - expected).abs() < 1e-9,
+            "{scale} instead of {expected}"
+        );
     }
 }
 
 #[test]
-fn the_low_pass_gives_the_known_answer() {
-    let known = known();
+fn the_low_pass_filter_equals_the_reference() {
+    let known = known_answers();
     let case = &known["lowpass"];
     let filter = LowPass::new(case["wc"].as_f64().unwrap(), case["dt"].as_f64().unwrap()).unwrap();
     for (filtered, expected) in filter
@@ -45,15 +50,18 @@ fn the_low_pass_gives_the_known_answer() {
         .iter()
         .zip(list(&case["expected"]))
     {
-        assert!((filtered - expected).abs() < 1e-12, "{filtered} {expected}");
+        assert!(
+            (filtered - expected).abs() < 1e-12,
+            "{filtered} instead of {expected}"
+        );
     }
 }
 
 #[test]
-fn lines_are_those_of_the_known_answer() {
-    let known = known();
+fn spectral_lines_equal_the_reference() {
+    let known = known_answers();
     let case = &known["noisy"]["spectra_r1"];
-    let lines = spectra(&noisy(&known, 1), 100.0, &Sequential)[0]
+    let lines = spectra(&noisy_segments(&known, 1), 100.0, &Sequential)[0]
         .between(case["lo"].as_f64().unwrap(), case["hi"].as_f64().unwrap());
     assert_eq!(lines.omega.len(), 4);
     for (omega, expected) in lines.omega.iter().zip(list(&case["w"])) {
@@ -64,8 +72,9 @@ fn lines_are_those_of_the_known_answer() {
 }
 
 #[test]
-fn the_measured_response_is_that_of_the_known_answer() {
-    let known = known();
+fn the_measured_response_equals_the_reference() {
+    // Tolerance of the reference: 1e-6, for responses and noise relative to the largest entry.
+    let known = known_answers();
     let case = &known["noisy"]["lpm"];
     let measured = local_polynomial(&noisy_spectra(), &list(&case["w"]), &Sequential).unwrap();
     let coherence = matrix(&case["coherence"]);
@@ -81,12 +90,13 @@ fn the_measured_response_is_that_of_the_known_answer() {
     }
 }
 
-/// Returns a synthetic system `dx/dt = A x + B u`, `y = C x + D u` with 2 inputs and 2 outputs, and
-/// its records without noise and feedback.
-fn exact(records: usize, samples: usize) -> (StateSpace, Vec<Segment>) {
+/// Returns a synthetic system with 2 inputs and 2 outputs, and its records at 25 Hz without noise
+/// and feedback; the inputs are low-pass filtered random numbers.
+fn noise_free_records(records: usize, samples: usize) -> (StateSpace, Vec<Segment>) {
     let model = slow_system();
     let held = FirstOrderHold::new(&model, 0.04).unwrap();
-    let segment = |record: usize| {
+    let mut segments = Vec::new();
+    for record in 0..records {
         let mut inputs = DMatrix::zeros(samples, 2);
         for (i, mut column) in inputs.column_iter_mut().enumerate() {
             let mut value = 0.0;
@@ -99,22 +109,30 @@ fn exact(records: usize, samples: usize) -> (StateSpace, Vec<Segment>) {
             }
         }
         let outputs = held.simulate(&DVector::from_element(4, record as f64 - 1.5), &inputs);
-        Segment {
+        segments.push(Segment {
             record,
             start_s: 0.0,
             sample_time_s: 0.04,
             inputs,
             outputs,
-        }
-    };
-    (model, (0..records).map(segment).collect())
+        });
+    }
+    (model, segments)
+}
+
+/// Adds uniform noise between -`amplitude` and `amplitude` to all outputs.
+fn add_output_noise(segment: &mut Segment, amplitude: f64, seed: u64) {
+    let noise = noise(seed, segment.outputs.len());
+    for (output, noise) in segment.outputs.iter_mut().zip(noise) {
+        *output += amplitude * noise;
+    }
 }
 
 #[test]
-fn the_response_of_an_exact_record_is_that_of_the_system() {
-    let (model, segments) = exact(4, 1500);
+fn noise_free_records_give_the_response_of_the_system() {
+    let (model, segments) = noise_free_records(4, 1500);
     let measured = local_polynomial(
-        &spectra(&segments, 10.4, &Sequential),
+        &spectra(&segments, HIGHEST_LINE, &Sequential),
         &log_spaced(0.5, 8.0, 12),
         &Sequential,
     )
@@ -125,13 +143,13 @@ fn the_response_of_an_exact_record_is_that_of_the_system() {
         // real parts are -0.4 rad/s or less.
         assert!(
             error < 0.05 * point.response.camax(),
-            "{} {error}",
+            "{} rad/s: error {error}",
             point.omega
         );
         // Deviations of the response from the polynomial count as noise.
         assert!(
             point.coherence.iter().all(|c| *c > 0.99),
-            "{} {}",
+            "{} rad/s: coherence {}",
             point.omega,
             point.coherence
         );
@@ -139,12 +157,16 @@ fn the_response_of_an_exact_record_is_that_of_the_system() {
 }
 
 #[test]
-fn the_variance_of_the_response_is_the_spread_of_many_trials() {
-    let (model, segments) = exact(2, 1000);
+fn the_variance_of_the_response_equals_the_spread_over_many_trials() {
+    let (model, segments) = noise_free_records(2, 1000);
     let omegas = [3.0];
-    let truth = local_polynomial(&spectra(&segments, 10.4, &Sequential), &omegas, &Sequential)
-        .unwrap()
-        .points[0]
+    let truth = local_polynomial(
+        &spectra(&segments, HIGHEST_LINE, &Sequential),
+        &omegas,
+        &Sequential,
+    )
+    .unwrap()
+    .points[0]
         .response
         .clone();
     let trials = 200;
@@ -153,16 +175,15 @@ fn the_variance_of_the_response_is_the_spread_of_many_trials() {
     for trial in 0..trials {
         let mut noisy = segments.clone();
         for (k, segment) in noisy.iter_mut().enumerate() {
-            let seed = 1000 + (10 * trial + k) as u64;
-            segment
-                .outputs
-                .iter_mut()
-                .zip(noise(seed, 2000))
-                .for_each(|(y, v)| *y += 10.0 * v);
+            add_output_noise(segment, 10.0, 1000 + (10 * trial + k) as u64);
         }
-        let point = &local_polynomial(&spectra(&noisy, 10.4, &Sequential), &omegas, &Sequential)
-            .unwrap()
-            .points[0];
+        let point = &local_polynomial(
+            &spectra(&noisy, HIGHEST_LINE, &Sequential),
+            &omegas,
+            &Sequential,
+        )
+        .unwrap()
+        .points[0];
         predicted += &point.variance / trials as f64;
         spread += (&point.response - &truth).map(|e| e.norm_sqr() / trials as f64);
     }
@@ -173,14 +194,14 @@ fn the_variance_of_the_response_is_the_spread_of_many_trials() {
         // 200 complex trials.
         assert!(
             (predicted / spread - 1.0).abs() < 0.21,
-            "{predicted} {spread}"
+            "predicted variance {predicted}, spread {spread}"
         );
     }
 }
 
 #[test]
-fn the_noise_covariance_is_that_of_the_noise_put_in() {
-    let (_, mut segments) = exact(6, 2000);
+fn the_noise_covariance_is_that_of_the_added_noise() {
+    let (_, mut segments) = noise_free_records(6, 2000);
     for (k, segment) in segments.iter_mut().enumerate() {
         let noise = noise(50 + k as u64, 4000);
         for n in 0..2000 {
@@ -191,15 +212,17 @@ fn the_noise_covariance_is_that_of_the_noise_put_in() {
         }
     }
     let measured = local_polynomial(
-        &spectra(&segments, 10.4, &Sequential),
+        &spectra(&segments, HIGHEST_LINE, &Sequential),
         &log_spaced(0.5, 8.0, 40),
         &Sequential,
     )
     .unwrap();
     let covariance = NoiseCovariance::from_measured(&measured).unwrap();
-    // White noise of variance 100/3 has spectral lines of power 100 dt / 3.
-    let line = 4.0 / 3.0;
-    let expected = DMatrix::from_row_slice(2, 2, &[1.0, 1.0, 1.0, 1.25]) * line;
+    // White noise of variance 100/3 has spectral lines of power 100 dt / 3 = 4/3 (dt = 0.04 s). The
+    // second output has the noise of the first and an independent noise of a quarter its power.
+    let line_power = 4.0 / 3.0;
+    let expected = DMatrix::from_row_slice(2, 2, &[1.0, 1.0, 1.0, 1.25]) * line_power;
+    // Mean over the same 40 frequencies, 0.5 to 8 rad/s.
     let mean = (0..40).fold(DMatrix::zeros(2, 2), |sum, k| {
         sum + covariance
             .at(0.5 * 16.0_f64.powf(k as f64 / 39.0))
@@ -217,7 +240,7 @@ fn the_noise_covariance_is_that_of_the_noise_put_in() {
 }
 
 #[test]
-fn the_covariance_is_smoothed_over_neighbours_and_straight_in_log_frequency_between() {
+fn the_noise_covariance_is_smoothed_and_interpolated_in_log_frequency() {
     let mut measured =
         local_polynomial(&noisy_spectra(), &log_spaced(0.5, 8.0, 9), &Sequential).unwrap();
     for (k, point) in measured.points.iter_mut().enumerate() {
@@ -225,7 +248,7 @@ fn the_covariance_is_smoothed_over_neighbours_and_straight_in_log_frequency_betw
         point.power.fill(0.0);
     }
     let covariance = NoiseCovariance::from_measured(&measured).unwrap();
-    // Weights 1, 2, 3, 2, 1, divided by their sum 9; 1e-4 is added.
+    // Smoothing weights 1, 2, 3, 2, 1, divided by their sum 9; 1e-4 of the covariance is added.
     for (k, expected) in [
         (1, 0.0),
         (2, 1.0),
@@ -238,6 +261,7 @@ fn the_covariance_is_smoothed_over_neighbours_and_straight_in_log_frequency_betw
         let at = covariance.at(measured.points[k].omega * (1.0 + 1e-15));
         assert!((at[(0, 0)] - 1.0001 * expected).norm() < 1e-9, "{k}");
     }
+    // Halfway between the values 2 and 3 of the points 3 and 4.
     let between = covariance.at((measured.points[3].omega * measured.points[4].omega).sqrt());
     assert!((between[(0, 0)] - 1.0001 * 2.5).norm() < 1e-9);
     assert_eq!(covariance.at(1e-3), covariance.at(0.5));
@@ -245,8 +269,8 @@ fn the_covariance_is_smoothed_over_neighbours_and_straight_in_log_frequency_betw
 }
 
 #[test]
-fn exact_and_dependent_outputs_still_have_a_weight() {
-    let (_, mut segments) = exact(4, 1500);
+fn noise_free_and_linearly_dependent_outputs_have_a_weight() {
+    let (_, mut segments) = noise_free_records(4, 1500);
     for segment in &mut segments {
         let sum = segment.outputs.column(0) * 2.0 + segment.outputs.column(1);
         segment.outputs = DMatrix::from_columns(&[
@@ -256,7 +280,7 @@ fn exact_and_dependent_outputs_still_have_a_weight() {
         ]);
     }
     let measured = local_polynomial(
-        &spectra(&segments, 10.4, &Sequential),
+        &spectra(&segments, HIGHEST_LINE, &Sequential),
         &log_spaced(0.5, 8.0, 40),
         &Sequential,
     )
@@ -271,10 +295,10 @@ fn exact_and_dependent_outputs_still_have_a_weight() {
 
 #[test]
 fn an_input_that_copies_another_is_not_identified() {
-    let (_, mut segments) = exact(4, 1500);
+    let (_, mut segments) = noise_free_records(4, 1500);
     assert_eq!(
         local_polynomial(
-            &spectra(&segments, 10.4, &Sequential),
+            &spectra(&segments, HIGHEST_LINE, &Sequential),
             &log_spaced(0.5, 8.0, 12),
             &Sequential
         )
@@ -287,15 +311,10 @@ fn an_input_that_copies_another_is_not_identified() {
     for (k, segment) in segments.iter_mut().enumerate() {
         let copy = segment.inputs.column(0) * 2.0;
         segment.inputs.column_mut(1).copy_from(&copy);
-        let noise = noise(k as u64, 3000);
-        segment
-            .outputs
-            .iter_mut()
-            .zip(noise)
-            .for_each(|(y, v)| *y += 0.05 * v);
+        add_output_noise(segment, 0.05, k as u64);
     }
     let measured = local_polynomial(
-        &spectra(&segments, 10.4, &Sequential),
+        &spectra(&segments, HIGHEST_LINE, &Sequential),
         &log_spaced(0.5, 8.0, 12),
         &Sequential,
     )
@@ -313,22 +332,18 @@ fn an_input_that_copies_another_is_not_identified() {
 
 #[test]
 fn an_input_without_effect_is_not_identified() {
-    let (_, mut segments) = exact(5, 1500);
+    let (_, mut segments) = noise_free_records(5, 1500);
     for (k, segment) in segments.iter_mut().enumerate() {
-        let blind = DVector::from_vec(noise(900 + k as u64, 1500));
+        let without_effect = DVector::from_vec(noise(900 + k as u64, 1500));
         segment.inputs = DMatrix::from_columns(&[
             segment.inputs.column(0).into_owned(),
             segment.inputs.column(1).into_owned(),
-            blind,
+            without_effect,
         ]);
-        segment
-            .outputs
-            .iter_mut()
-            .zip(noise(k as u64, 3000))
-            .for_each(|(y, v)| *y += 0.05 * v);
+        add_output_noise(segment, 0.05, k as u64);
     }
     let measured = local_polynomial(
-        &spectra(&segments, 10.4, &Sequential),
+        &spectra(&segments, HIGHEST_LINE, &Sequential),
         &log_spaced(0.5, 8.0, 40),
         &Sequential,
     )
@@ -340,8 +355,8 @@ fn an_input_without_effect_is_not_identified() {
 }
 
 #[test]
-fn vibration_lowers_the_cut_off_and_is_named() {
-    let (_, mut segments) = exact(2, 1500);
+fn vibration_lowers_the_cut_off_and_its_channel_is_named() {
+    let (_, mut segments) = noise_free_records(2, 1500);
     assert_eq!(
         CutOff::choose(&segments, 8.0, &Sequential),
         CutOff {
@@ -350,10 +365,12 @@ fn vibration_lowers_the_cut_off_and_is_named() {
             vibrating: vec![]
         }
     );
-    let vibration = segments[0].outputs.column(1).amax();
+    // A vibration of 50 rad/s in the second output, as large as its motion.
+    let amplitude = segments[0].outputs.column(1).amax();
     for segment in &mut segments {
-        (0..1500)
-            .for_each(|n| segment.outputs[(n, 1)] += vibration * (50.0 * 0.04 * n as f64).sin());
+        for n in 0..1500 {
+            segment.outputs[(n, 1)] += amplitude * (50.0 * 0.04 * n as f64).sin();
+        }
     }
     let cut_off = CutOff::choose(&segments, 8.0, &Sequential);
     assert_eq!(
@@ -365,17 +382,18 @@ fn vibration_lowers_the_cut_off_and_is_named() {
         (16.0, 1, 1)
     );
     let filtered = cut_off.apply(&segments, &Sequential);
-    let share = CutOff::choose(&filtered, 8.0, &Sequential).vibrating;
-    assert_eq!(share, []);
+    let remaining = CutOff::choose(&filtered, 8.0, &Sequential).vibrating;
+    assert_eq!(remaining, [], "the filter removes the vibration");
 }
 
 #[test]
-fn the_low_pass_passes_straight_lines_and_is_none_near_half_the_sampling_frequency() {
+fn the_low_pass_filter_keeps_straight_lines_and_refuses_cut_offs_near_the_nyquist_frequency() {
     let filter = LowPass::new(20.0, 0.02).unwrap();
     let line: Vec<f64> = (0..40).map(|n| 3.0 - 0.2 * n as f64).collect();
     for (filtered, line) in filter.filter(&line).iter().zip(&line) {
         assert!((filtered - line).abs() < 1e-12);
     }
+    // The Nyquist frequency is pi / 0.02 s = 157 rad/s.
     for (omega, dt) in [
         (130.0, 0.02),
         (f64::NAN, 0.02),
@@ -384,7 +402,7 @@ fn the_low_pass_passes_straight_lines_and_is_none_near_half_the_sampling_frequen
         (f64::INFINITY, 1.0),
         (0.0, 0.0),
     ] {
-        assert_eq!(LowPass::new(omega, dt), None);
+        assert_eq!(LowPass::new(omega, dt), None, "{omega} rad/s, {dt} s");
     }
     for length in 0..4 {
         // A signal shorter than the reach of the filter, 63 samples, is reflected repeatedly.
@@ -398,10 +416,10 @@ fn the_low_pass_passes_straight_lines_and_is_none_near_half_the_sampling_frequen
 }
 
 #[test]
-fn a_short_record_has_a_response_and_one_of_a_few_lines_says_so() {
-    let (_, segments) = exact(1, 250);
+fn a_short_record_has_a_response_and_too_few_lines_are_refused() {
+    let (_, segments) = noise_free_records(1, 250);
     // 10 s give 16 lines up to 10.4 rad/s, all of which the polynomial of first degree uses.
-    let all = spectra(&segments, 10.4, &Sequential);
+    let all = spectra(&segments, HIGHEST_LINE, &Sequential);
     let point = &local_polynomial(&all, &[0.3], &Sequential).unwrap().points[0];
     assert!(
         point.half_width > 7.0 && point.freedom > 0,
@@ -421,8 +439,8 @@ fn a_short_record_has_a_response_and_one_of_a_few_lines_says_so() {
 }
 
 #[test]
-fn records_cut_into_pieces_of_twenty_seconds_still_have_a_response() {
-    let (model, segments) = exact(9, 1500);
+fn records_cut_into_pieces_of_twenty_seconds_give_the_response_of_the_system() {
+    let (model, segments) = noise_free_records(9, 1500);
     let cut: Vec<Segment> = segments
         .iter()
         .flat_map(|segment| {
@@ -434,17 +452,18 @@ fn records_cut_into_pieces_of_twenty_seconds_still_have_a_response() {
         })
         .collect();
     let measured = local_polynomial(
-        &spectra(&cut, 10.4, &Sequential),
+        &spectra(&cut, HIGHEST_LINE, &Sequential),
         &log_spaced(0.25, 8.0, 40),
         &Sequential,
     )
     .unwrap();
+    // 5 %, as for complete records.
     let point = measured.points.last().unwrap();
     assert!((&point.response - response(&model, 8.0)).camax() < 0.05 * point.response.camax());
 }
 
 #[test]
-fn hostile_lines_are_refused() {
+fn unusable_lines_and_frequencies_are_refused() {
     assert_eq!(
         local_polynomial(&[], &[1.0], &Sequential),
         Err(LocalPolynomialError::Nothing {
@@ -486,6 +505,7 @@ fn hostile_lines_are_refused() {
         local_polynomial(&bad, &[1.0], &Sequential),
         Err(LocalPolynomialError::ChannelsDiffer(2))
     );
+    // Lines without any power are accepted; the results are finite.
     let silent: Vec<Spectrum> = good
         .iter()
         .map(|s| Spectrum {
@@ -505,7 +525,7 @@ fn hostile_lines_are_refused() {
 }
 
 #[test]
-fn hostile_pieces_have_no_scales_and_no_lines() {
+fn unusable_segments_have_no_scales_and_no_lines() {
     let segment = |rows: usize, value: f64| Segment {
         record: 0,
         start_s: 0.0,
@@ -540,96 +560,131 @@ fn hostile_pieces_have_no_scales_and_no_lines() {
             0
         );
     }
-    let other = Segment {
+    let two_outputs = Segment {
         outputs: DMatrix::zeros(9, 2),
         ..segment(9, 1.0)
     };
     assert_eq!(
-        Scales::from_segments(&[segment(9, 1.0), other]),
+        Scales::from_segments(&[segment(9, 1.0), two_outputs]),
         Err(ScalingError::ChannelsDiffer(1))
     );
 }
 
 #[test]
-fn results_are_the_same_to_the_last_bit_for_any_number_of_threads() {
-    let segments = noisy(&known(), 4);
+fn results_do_not_depend_on_the_number_of_threads() {
+    let segments = noisy_segments(&known_answers(), 4);
     let scales = Scales::from_segments(&segments).unwrap();
     let scaled: Vec<_> = segments
         .iter()
         .map(|segment| scales.scaled(segment))
         .collect();
-    let on = |threads: usize| {
+    let results = |threads: usize| {
         let executor = Threads(threads);
-        let lines = spectra(&scaled, 10.4, &executor);
+        let lines = spectra(&scaled, HIGHEST_LINE, &executor);
         let measured = local_polynomial(&lines, &log_spaced(0.3, 8.0, 40), &executor).unwrap();
         (CutOff::choose(&scaled, 8.0, &executor), measured)
     };
-    assert_eq!(on(1), on(5));
+    assert_eq!(results(1), results(5));
+}
+
+fn measured_response(segments: &[Segment], omegas: &[f64]) -> ResponseEstimate {
+    let lines = spectra(segments, HIGHEST_LINE, &Sequential);
+    local_polynomial(&lines, omegas, &Sequential).unwrap()
+}
+
+/// Returns the response in the units of the channels, estimated from scaled segments.
+fn response_in_units(segments: &[Segment], omegas: &[f64]) -> ResponseEstimate {
+    let scales = Scales::from_segments(segments).unwrap();
+    let scaled: Vec<_> = segments
+        .iter()
+        .map(|segment| scales.scaled(segment))
+        .collect();
+    measured_response(&scaled, omegas).in_units(&scales)
 }
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(tries(6, 16)))]
 
     #[test]
-    fn trims_and_drifts_do_not_change_the_response(trim in -100.0..100.0, drift in -1.0..1.0, record in 0_usize..4, channel in 0_usize..4) {
-        let segments = noisy(&known(), 4);
+    fn trims_and_drifts_do_not_change_the_response(
+        trim in -100.0..100.0,
+        drift in -1.0..1.0,
+        record in 0_usize..4,
+        channel in 0_usize..4,
+    ) {
+        let segments = noisy_segments(&known_answers(), 4);
         let omegas = log_spaced(0.3, 8.0, 12);
-        let before = local_polynomial(&spectra(&segments, 10.4, &Sequential), &omegas, &Sequential).unwrap();
+        let before = measured_response(&segments, &omegas);
         let mut moved = segments.clone();
         let segment = &mut moved[record];
-        let samples = if channel < 2 { &mut segment.inputs } else { &mut segment.outputs };
+        let samples = if channel < 2 {
+            &mut segment.inputs
+        } else {
+            &mut segment.outputs
+        };
         // A constant is added to any channel, a ramp only to outputs, where it acts as a transient:
         // the response to a ramp of an input is a ramp of the output.
         let drift = if channel < 2 { 0.0 } else { drift };
-        samples.column_mut(channel % 2).iter_mut().enumerate().for_each(|(n, x)| *x += trim + 0.04 * drift * n as f64);
-        let after = local_polynomial(&spectra(&moved, 10.4, &Sequential), &omegas, &Sequential).unwrap();
+        for (n, sample) in samples.column_mut(channel % 2).iter_mut().enumerate() {
+            *sample += trim + 0.04 * drift * n as f64;
+        }
+        let after = measured_response(&moved, &omegas);
         for (before, after) in before.points.iter().zip(&after.points) {
             // The spectrum of a ramp is proportional to 1/(j omega). A second-degree polynomial
             // follows it only partly in windows that reach the first line; well above, 2 % of a
             // drift of 40 per record remain, compared with noise of 0.1.
             if before.omega > 1.5 || drift == 0.0 {
                 let allowed = if drift == 0.0 { 1e-9 } else { 0.02 };
-                prop_assert!((&before.response - &after.response).camax() < allowed * before.response.camax().max(1.0));
+                let change = (&before.response - &after.response).camax();
+                prop_assert!(change < allowed * before.response.camax().max(1.0));
             }
         }
     }
 
     #[test]
-    fn records_and_channels_in_another_order_give_the_response_in_that_order(order in Just(vec![0_usize, 1, 2, 3]).prop_shuffle()) {
-        let segments = noisy(&known(), 4);
+    fn permuting_records_and_channels_permutes_the_response(
+        order in Just(vec![0_usize, 1, 2, 3]).prop_shuffle(),
+    ) {
+        let segments = noisy_segments(&known_answers(), 4);
         let omegas = log_spaced(0.5, 8.0, 7);
-        let before = local_polynomial(&spectra(&segments, 10.4, &Sequential), &omegas, &Sequential).unwrap();
-        let swapped: Vec<Segment> = order.iter().map(|&k| Segment {
-            inputs: segments[k].inputs.select_columns(&[1, 0]),
-            outputs: segments[k].outputs.select_columns(&[1, 0]),
-            ..segments[k].clone()
-        }).collect();
-        let after = local_polynomial(&spectra(&swapped, 10.4, &Sequential), &omegas, &Sequential).unwrap();
+        let before = measured_response(&segments, &omegas);
+        let swapped: Vec<Segment> = order
+            .iter()
+            .map(|&k| Segment {
+                inputs: segments[k].inputs.select_columns(&[1, 0]),
+                outputs: segments[k].outputs.select_columns(&[1, 0]),
+                ..segments[k].clone()
+            })
+            .collect();
+        let after = measured_response(&swapped, &omegas);
         for (before, after) in before.points.iter().zip(&after.points) {
-            for (o, i) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-                prop_assert!((before.response[(o, i)] - after.response[(1 - o, 1 - i)]).norm() < 1e-9);
-                prop_assert!((before.partial_coherence[(o, i)] - after.partial_coherence[(1 - o, 1 - i)]).abs() < 1e-9);
-                prop_assert!((before.noise[(o, i)] - after.noise[(1 - o, 1 - i)]).abs() < 1e-9);
+            for here in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                let there = (1 - here.0, 1 - here.1);
+                let change = (before.response[here] - after.response[there]).norm();
+                prop_assert!(change < 1e-9);
+                let change = before.partial_coherence[here] - after.partial_coherence[there];
+                prop_assert!(change.abs() < 1e-9);
+                prop_assert!((before.noise[here] - after.noise[there]).abs() < 1e-9);
             }
         }
     }
 
     #[test]
-    fn units_change_the_response_by_their_ratio(gain in 1e-3..1e3) {
-        let segments = noisy(&known(), 4);
+    fn the_unit_of_an_input_scales_the_response(gain in 1e-3..1e3) {
+        let segments = noisy_segments(&known_answers(), 4);
         let omegas = log_spaced(0.5, 8.0, 5);
-        let response = |segments: &[Segment]| {
-            let scales = Scales::from_segments(segments).unwrap();
-            let scaled: Vec<_> = segments.iter().map(|segment| scales.scaled(segment)).collect();
-            local_polynomial(&spectra(&scaled, 10.4, &Sequential), &omegas, &Sequential).unwrap().in_units(&scales)
-        };
-        let before = response(&segments);
-        let mut other = segments.clone();
-        other.iter_mut().for_each(|segment| segment.inputs.column_mut(0).scale_mut(gain));
-        for (before, after) in before.points.iter().zip(&response(&other).points) {
-            for o in 0..2 {
-                prop_assert!((after.response[(o, 0)] * gain - before.response[(o, 0)]).norm() < 1e-9 * before.response.camax());
-                prop_assert!((after.variance[(o, 0)] * gain * gain / before.variance[(o, 0)] - 1.0).abs() < 1e-9);
+        let before = response_in_units(&segments, &omegas);
+        let mut other_unit = segments.clone();
+        for segment in &mut other_unit {
+            segment.inputs.column_mut(0).scale_mut(gain);
+        }
+        let after = response_in_units(&other_unit, &omegas);
+        for (before, after) in before.points.iter().zip(&after.points) {
+            for entry in [(0, 0), (1, 0)] {
+                let change = (after.response[entry] * gain - before.response[entry]).norm();
+                prop_assert!(change < 1e-9 * before.response.camax());
+                let ratio = after.variance[entry] * gain * gain / before.variance[entry];
+                prop_assert!((ratio - 1.0).abs() < 1e-9);
             }
         }
     }

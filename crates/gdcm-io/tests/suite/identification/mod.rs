@@ -1,5 +1,5 @@
-//! Identification from flight records: comparison with independent numpy code, general properties,
-//! and simulated flights.
+//! Identification from flight records (M14): comparison with independent numpy code, general
+//! properties, and simulated flights.
 
 mod bands;
 mod common;

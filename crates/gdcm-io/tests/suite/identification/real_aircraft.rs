@@ -1,4 +1,4 @@
-//! The models of the example *Real aircraft*, identified again from its flight records.
+//! The identified models of the example *Real aircraft* are reproduced from its flight records.
 
 use gdcm_io::import::record_files::example_records;
 use gdcm_io::{Example, load_example};
@@ -9,8 +9,9 @@ use gdcm_study::jobs::identification_jobs::IdentificationRequest;
 use gdcm_sysid::identification::{Identification, Preparation};
 use gdcm_sysid::records::{LaidOutRecord, RecordChannels, TimeSettings};
 
-use super::common::{response, space};
+use super::common::{response, state_space};
 
+/// Identifies the models of a condition from its records.
 fn identified(dataset: &Dataset, id: ConditionId) -> Identification {
     let channels = RecordChannels::of_dataset(dataset).of_named_records();
     let mut records: Vec<LaidOutRecord> = Vec::new();
@@ -37,7 +38,7 @@ fn identified(dataset: &Dataset, id: ConditionId) -> Identification {
 /// Returns the rms deviation of the on-axis responses of a model from those of the dataset's model,
 /// in standard deviations of the latter, over the band.
 fn deviation(dataset: &Dataset, found: &Model, kept: &Model) -> f64 {
-    let bands = kept.bands.as_ref().expect("it has bands");
+    let bands = kept.bands.as_ref().expect("the dataset's model has bands");
     let band = dataset.band();
     let mut sum = 0.0;
     let mut count = 0.0;
@@ -45,8 +46,8 @@ fn deviation(dataset: &Dataset, found: &Model, kept: &Model) -> f64 {
         if !(band.min()..=band.max()).contains(omega) {
             continue;
         }
-        let found = response(space(found), *omega);
-        let kept = response(space(kept), *omega);
+        let found = response(state_space(found), *omega);
+        let kept = response(state_space(kept), *omega);
         for (pair, is_on_axis) in dataset.on_axis().iter() {
             if !is_on_axis {
                 continue;
@@ -63,7 +64,7 @@ fn deviation(dataset: &Dataset, found: &Model, kept: &Model) -> f64 {
 }
 
 #[track_caller]
-fn assert_models_come_again(id: ConditionId) {
+fn assert_models_are_reproduced(id: ConditionId) {
     let dataset = load_example(Example::RealAircraft).unwrap().dataset;
     let found = identified(&dataset, id);
     let kept = &dataset
@@ -71,20 +72,20 @@ fn assert_models_come_again(id: ConditionId) {
         .unwrap()
         .bundle(BundleKind::Identified)[0];
     assert_eq!(found.refined.name, kept.name);
-    // The file holds every digit, and another processor rounds differently; a hundredth of a
-    // standard deviation is far less than any figure of the tutorial shows.
+    // Another processor rounds differently. A hundredth of a standard deviation is invisible in the
+    // figures and tables of the tutorial.
     let deviation = deviation(&dataset, &found.refined, kept);
     assert!(deviation < 0.01, "{deviation} standard deviations");
 }
 
 #[test]
-#[ignore = "the models are made anew when the identification changes: assets/make-real-aircraft"]
-fn the_flight_indoors_gives_its_models_again() {
-    assert_models_come_again(ConditionId(1));
+#[ignore = "slow; if it fails, remake the models with assets/make-real-aircraft"]
+fn the_indoor_flight_reproduces_its_models() {
+    assert_models_are_reproduced(ConditionId(1));
 }
 
 #[test]
-#[ignore = "the models are made anew when the identification changes: assets/make-real-aircraft"]
-fn the_flight_outdoors_gives_its_models_again() {
-    assert_models_come_again(ConditionId(2));
+#[ignore = "slow; if it fails, remake the models with assets/make-real-aircraft"]
+fn the_outdoor_flight_reproduces_its_models() {
+    assert_models_are_reproduced(ConditionId(2));
 }

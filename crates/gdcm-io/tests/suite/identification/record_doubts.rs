@@ -1,4 +1,5 @@
-//! Spikes and rate limits in logged flights: the example's records, and files of a folder (M14.24).
+//! Cautions about spikes and rate limits in logged flights (M14.24): the example's records, and the
+//! log files of a folder.
 
 use std::sync::Arc;
 
@@ -13,7 +14,7 @@ use gdcm_sysid::records::RecordTable;
 use gdcm_sysid::spectra::preparation::prepare;
 use gdcm_sysid::spectra::record_cautions::RecordCaution;
 
-/// Environment variable with a folder of log files for the measurement.
+/// Environment variable with the path of a folder of log files.
 const FOLDER: &str = "GDCM_LOGGED_FLIGHTS";
 
 /// A channel on its own clock.
@@ -23,8 +24,8 @@ struct LoggedChannel {
     values: Vec<f64>,
 }
 
-/// Returns the moving channels of a table, each with its own stamps; columns without a topic use the
-/// first column that always increases.
+/// Returns the channels of a table that vary, each with its own time stamps; columns without a
+/// topic use the first column that always increases.
 fn channels(table: &RecordTable) -> Vec<LoggedChannel> {
     let clock = table
         .columns
@@ -53,9 +54,9 @@ fn increases(values: &[f64]) -> bool {
     values.len() > 1 && values.windows(2).all(|pair| pair[0] < pair[1])
 }
 
-/// Returns the cautions about spikes and rate limits of a channel, taken as an input; the output is
-/// a made-up wave.
-fn doubts(channel: &LoggedChannel) -> Vec<RecordCaution> {
+/// Returns the cautions about spikes and rate limits of a channel, taken as the input of a record
+/// whose output is a sine.
+fn spike_and_rate_cautions(channel: &LoggedChannel) -> Vec<RecordCaution> {
     let rows = channel.values.len();
     let record = FlightRecord {
         name: channel.name.clone(),
@@ -66,7 +67,7 @@ fn doubts(channel: &LoggedChannel) -> Vec<RecordCaution> {
     let preparation = Preparation {
         resample: true,
         least_segment_s: 1.0,
-        ..Preparation::new(&[channel.name.as_str()], &["wave"])
+        ..Preparation::new(&[channel.name.as_str()], &["sine"])
     };
     let Ok(prepared) = prepare(&[record], &preparation, &Sequential) else {
         return Vec::new();
@@ -93,15 +94,22 @@ fn the_examples_records_have_no_spikes_and_no_rate_limits() {
     for table in tables(&crate::records_archive(), "example-records.zip") {
         for channel in channels(&table) {
             count += 1;
-            assert_eq!(doubts(&channel), [], "{}: {}", table.name, channel.name);
+            assert_eq!(
+                spike_and_rate_cautions(&channel),
+                [],
+                "{}: {}",
+                table.name,
+                channel.name
+            );
         }
     }
+    // Nine records of eleven conditions, with six outputs and four inputs each.
     assert_eq!(count, 990);
 }
 
 #[test]
 #[ignore = "reads the log files of a folder given by an environment variable"]
-fn measure_doubts_about_the_logs_of_a_folder() {
+fn print_cautions_about_the_logs_of_a_folder() {
     let Some(folder) = std::env::var_os(FOLDER) else {
         return;
     };
@@ -118,7 +126,7 @@ fn measure_doubts_about_the_logs_of_a_folder() {
         for table in &read.tables {
             for channel in channels(table) {
                 count += 1;
-                for caution in doubts(&channel) {
+                for caution in spike_and_rate_cautions(&channel) {
                     println!("{name}: {caution}");
                 }
             }

@@ -1,4 +1,5 @@
-//! Comparison of models with records in the time domain.
+//! Validation of models in the time domain: fit in percent and Theil's inequality coefficient of a
+//! simulation with the logged inputs, over windows of a record.
 
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
@@ -9,8 +10,8 @@ use gdcm_model::simulation::{
     FirstOrderHold, Segment, ValidationError, ValidationSettings, validate,
 };
 
-use super::common::{known, list, noise, noisy, slow_system};
-use crate::made_up::tries;
+use super::common::{known_answers, list, noise, noisy_segments, slow_system};
+use crate::synthetic::tries;
 
 /// Returns a system with an unstable eigenvalue at `+growth` rad/s and a stable one at -1 rad/s.
 fn unstable(growth: f64) -> StateSpace {
@@ -21,8 +22,8 @@ fn unstable(growth: f64) -> StateSpace {
 }
 
 /// Simulates `model` from the state `initial` with slowly varying inputs; then adds a trim of 40 to
-/// the inputs, and trims to the outputs.
-fn record(model: &StateSpace, initial: &[f64], samples: usize, dt: f64) -> Segment {
+/// the inputs, and of 3 and -0.7 to the outputs.
+fn simulated_segment(model: &StateSpace, initial: &[f64], samples: usize, dt: f64) -> Segment {
     let mut inputs = DMatrix::zeros(samples, model.inputs());
     for (i, mut column) in inputs.column_iter_mut().enumerate() {
         let mut value = 0.0;
@@ -46,9 +47,9 @@ fn record(model: &StateSpace, initial: &[f64], samples: usize, dt: f64) -> Segme
 }
 
 #[test]
-fn a_ramp_and_a_step_are_answered_as_in_the_textbook() {
-    // dx/dt = -2 x + 3 u, y = x. For u = t: x = 3/4 (2 t - 1 + e^-2t), exact because the inputs are
-    // linear between samples.
+fn ramp_and_step_responses_equal_their_closed_forms() {
+    // dx/dt = -2 x + 3 u, y = x. For u = t: x = 3/4 (2 t - 1 + e^-2t); for u = 1: x = 3/2 (1 -
+    // e^-2t). The simulation is exact because the inputs are linear between samples.
     let [a, b, c, d] = [-2.0, 3.0, 1.0, 0.0].map(|entry| DMatrix::from_element(1, 1, entry));
     let model = StateSpace::new(a, b, c, d).unwrap();
     let held = FirstOrderHold::new(&model, 0.5).unwrap();
@@ -66,9 +67,9 @@ fn a_ramp_and_a_step_are_answered_as_in_the_textbook() {
 }
 
 #[test]
-fn the_exact_model_fits_a_record_whole_from_any_state_and_trim() {
+fn the_true_model_fits_completely_from_an_unknown_state_and_trim() {
     let model = slow_system();
-    let segment = record(&model, &[1.0, -2.0, 0.5, 3.0], 1234, 0.04);
+    let segment = simulated_segment(&model, &[1.0, -2.0, 0.5, 3.0], 1234, 0.04);
     let validation = validate(
         &model,
         &[segment],
@@ -83,9 +84,9 @@ fn the_exact_model_fits_a_record_whole_from_any_state_and_trim() {
 }
 
 #[test]
-fn windows_follow_each_other_and_leave_no_sample_out() {
+fn windows_follow_each_other_without_gap() {
     let model = slow_system();
-    let segment = record(&model, &[0.0; 4], 1234, 0.04);
+    let segment = simulated_segment(&model, &[0.0; 4], 1234, 0.04);
     let validation = validate(
         &model,
         std::slice::from_ref(&segment),
@@ -98,15 +99,15 @@ fn windows_follow_each_other_and_leave_no_sample_out() {
         5,
         "49.36 s take five windows of at most 10 s"
     );
-    let mut next = 5.0;
+    let mut expected_start_s = 5.0;
     let mut rows = 0;
     for window in &validation.windows {
-        assert!((window.start_s - next).abs() < 1e-9 && window.record == 3);
+        assert!((window.start_s - expected_start_s).abs() < 1e-9 && window.record == 3);
         assert_eq!(
             window.measured,
             segment.outputs.rows(rows, window.measured.nrows())
         );
-        next += 0.04 * window.measured.nrows() as f64;
+        expected_start_s += 0.04 * window.measured.nrows() as f64;
         rows += window.measured.nrows();
     }
     assert_eq!(rows, 1234);
@@ -115,7 +116,7 @@ fn windows_follow_each_other_and_leave_no_sample_out() {
 #[test]
 fn an_unstable_model_has_windows_of_three_time_constants() {
     let model = unstable(0.5);
-    let segment = record(&model, &[1e-6, 0.0], 600, 0.05);
+    let segment = simulated_segment(&model, &[1e-6, 0.0], 600, 0.05);
     let validation = validate(
         &model,
         &[segment],
@@ -137,9 +138,10 @@ fn an_unstable_model_has_windows_of_three_time_constants() {
 }
 
 #[test]
-fn a_model_that_diverges_within_a_few_samples_is_refused_in_words() {
+fn a_model_that_diverges_within_a_few_samples_is_refused() {
+    // Three time constants of 1/40 s are 0.075 s, less than two samples.
     let model = unstable(40.0);
-    let mut segment = record(&unstable(-1.0), &[0.0, 0.0], 600, 0.05);
+    let mut segment = simulated_segment(&unstable(-1.0), &[0.0, 0.0], 600, 0.05);
     segment.outputs.column_mut(0).add_scalar_mut(1.0);
     let refused = validate(
         &model,
@@ -157,21 +159,16 @@ fn a_model_that_diverges_within_a_few_samples_is_refused_in_words() {
 #[test]
 fn noise_lowers_the_fit_by_its_share() {
     let model = slow_system();
-    let mut segment = record(&model, &[0.0; 4], 2500, 0.04);
+    let mut segment = simulated_segment(&model, &[0.0; 4], 2500, 0.04);
     let clean = segment.outputs.clone();
-    let std = (0..2)
-        .map(|o| clean.column(o).variance().sqrt())
-        .collect::<Vec<_>>();
-    for (o, std) in std.iter().enumerate() {
+    for o in 0..2 {
+        let sd = clean.column(o).variance().sqrt();
         // Uniform noise between -1 and 1 has a standard deviation of 1 / sqrt 3; it is scaled to a
         // tenth of the standard deviation of the output.
         let noise = noise(99 + o as u64, 2500);
-        segment
-            .outputs
-            .column_mut(o)
-            .iter_mut()
-            .zip(noise)
-            .for_each(|(y, v)| *y += 0.1 * std * 3.0_f64.sqrt() * v);
+        for (sample, noise) in segment.outputs.column_mut(o).iter_mut().zip(noise) {
+            *sample += 0.1 * sd * 3.0_f64.sqrt() * noise;
+        }
     }
     let validation = validate(
         &model,
@@ -189,9 +186,10 @@ fn noise_lowers_the_fit_by_its_share() {
 }
 
 #[test]
-fn vibration_above_the_low_pass_does_not_count() {
+fn vibration_above_the_cut_off_of_the_filter_does_not_lower_the_fit() {
+    // A vibration of 100 rad/s, and a filter at 8 rad/s.
     let model = slow_system();
-    let mut segment = record(&model, &[0.0; 4], 2500, 0.02);
+    let mut segment = simulated_segment(&model, &[0.0; 4], 2500, 0.02);
     for n in 0..2500 {
         segment.outputs[(n, 0)] += 5.0 * (100.0 * 0.02 * n as f64).sin();
     }
@@ -210,8 +208,7 @@ fn vibration_above_the_low_pass_does_not_count() {
     )
     .unwrap();
     assert!(raw.fit_percent[0].unwrap() < 50.0);
-    // At the ends of the record, which are reflected during a vibration, some of the vibration
-    // remains.
+    // The filter reflects the record at its ends, where some of the vibration remains.
     assert!(
         filtered.fit_percent[0].unwrap() > 95.0,
         "{:?}",
@@ -220,9 +217,9 @@ fn vibration_above_the_low_pass_does_not_count() {
 }
 
 #[test]
-fn the_system_that_made_the_known_record_fits_it_about_as_well_as_the_identified_model() {
-    let known = known();
-    let held_out = noisy(&known, 5).split_off(4);
+fn the_true_system_fits_the_reference_record_like_the_identified_model() {
+    let known = known_answers();
+    let held_out = noisy_segments(&known, 5).split_off(4);
     let validation = validate(
         &slow_system(),
         &held_out,
@@ -232,9 +229,9 @@ fn the_system_that_made_the_known_record_fits_it_about_as_well_as_the_identified
     .unwrap();
     let expected = &known["noisy"]["expected"];
     for o in 0..2 {
-        // The reference values are those of an identified model, here the true system is validated
-        // (except for the hold of its inputs). The noise of a single record explains a difference
-        // of 3 %.
+        // The reference values belong to an identified model. Here the true system is validated,
+        // except for the hold of its inputs; the noise of a single record explains a difference of
+        // 3 %.
         assert!(
             (validation.fit_percent[o].unwrap() - list(&expected["held_out_fit_percent"])[o]).abs()
                 < 3.0,
@@ -247,8 +244,8 @@ fn the_system_that_made_the_known_record_fits_it_about_as_well_as_the_identified
 }
 
 #[test]
-fn an_output_that_does_not_move_has_no_fit() {
-    let mut segment = record(&slow_system(), &[0.0; 4], 600, 0.04);
+fn a_constant_output_has_no_fit() {
+    let mut segment = simulated_segment(&slow_system(), &[0.0; 4], 600, 0.04);
     segment.outputs.column_mut(1).fill(2.0);
     let validation = validate(
         &slow_system(),
@@ -262,19 +259,10 @@ fn an_output_that_does_not_move_has_no_fit() {
 }
 
 #[test]
-fn hostile_models_and_records_are_refused() {
+fn unusable_models_and_records_are_refused() {
     let good = slow_system();
-    let segment = record(&good, &[0.0; 4], 600, 0.04);
+    let segment = simulated_segment(&good, &[0.0; 4], 600, 0.04);
     let settings = ValidationSettings::unfiltered();
-    let of = |model: &StateSpace| {
-        validate(
-            model,
-            std::slice::from_ref(&segment),
-            &settings,
-            &Sequential,
-        )
-        .map(|_| ())
-    };
     assert_eq!(
         validate(&good, &[], &settings, &Sequential),
         Err(ValidationError::NoSegments)
@@ -293,30 +281,43 @@ fn hostile_models_and_records_are_refused() {
         Err(ValidationError::NoWindow)
     );
 
-    let with = |a: DMatrix<f64>, inputs: usize| {
-        let b = good.b().columns(0, inputs).into_owned();
-        StateSpace::new(
-            a,
-            b,
-            good.c().clone(),
-            good.d().columns(0, inputs).into_owned(),
-        )
-        .unwrap()
-    };
+    // Oscillations at an absurd frequency.
     for value in [1e300, -1e300] {
         let mut a = good.a().clone();
-        (a[(1, 2)], a[(2, 1)]) = (value, -value);
-        assert!(of(&with(a, 2)).is_err(), "{value}");
+        a[(1, 2)] = value;
+        a[(2, 1)] = -value;
+        let model =
+            StateSpace::new(a, good.b().clone(), good.c().clone(), good.d().clone()).unwrap();
+        let found = validate(
+            &model,
+            std::slice::from_ref(&segment),
+            &settings,
+            &Sequential,
+        );
+        assert!(found.is_err(), "{value}");
     }
+    let one_input = StateSpace::new(
+        good.a().clone(),
+        good.b().columns(0, 1).into_owned(),
+        good.c().clone(),
+        good.d().columns(0, 1).into_owned(),
+    )
+    .unwrap();
     assert_eq!(
-        of(&with(good.a().clone(), 1)),
-        Err(ValidationError::ChannelsDiffer(3))
+        validate(
+            &one_input,
+            std::slice::from_ref(&segment),
+            &settings,
+            &Sequential
+        ),
+        Err(ValidationError::ChannelsDiffer(3)),
+        "the error names the record"
     );
 
-    let mut broken = segment.clone();
-    broken.outputs[(30, 0)] = f64::NAN;
+    let mut not_finite = segment.clone();
+    not_finite.outputs[(30, 0)] = f64::NAN;
     assert_eq!(
-        validate(&good, &[broken], &settings, &Sequential),
+        validate(&good, &[not_finite], &settings, &Sequential),
         Err(ValidationError::NotFinite)
     );
     let short = Segment {
@@ -343,25 +344,33 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(tries(8, 24)))]
 
     #[test]
-    fn trims_and_units_do_not_change_the_fit(trim in -1e3..1e3, gain in 0.01..100.0, seed in 0_u64..1000) {
+    fn trims_and_units_do_not_change_the_fit(
+        trim in -1e3..1e3,
+        gain in 0.01..100.0,
+        seed in 0_u64..1000,
+    ) {
         let model = slow_system();
-        let mut segment = record(&model, &[0.3, 0.0, -1.0, 0.0], 700, 0.04);
-        segment.outputs.column_mut(0).iter_mut().zip(noise(seed, 700)).for_each(|(y, v)| *y += 0.2 * v);
+        let mut segment = simulated_segment(&model, &[0.3, 0.0, -1.0, 0.0], 700, 0.04);
+        for (sample, noise) in segment.outputs.column_mut(0).iter_mut().zip(noise(seed, 700)) {
+            *sample += 0.2 * noise;
+        }
         let settings = ValidationSettings::unfiltered();
-        let before = validate(&model, std::slice::from_ref(&segment), &settings, &Sequential).unwrap();
+        let segments = std::slice::from_ref(&segment);
+        let before = validate(&model, segments, &settings, &Sequential).unwrap();
         let mut c = model.c().clone();
         let mut d = model.d().clone();
         c.row_mut(0).scale_mut(gain);
         d.row_mut(0).scale_mut(gain);
-        let other = StateSpace::new(model.a().clone(), model.b().clone(), c, d).unwrap();
+        let scaled = StateSpace::new(model.a().clone(), model.b().clone(), c, d).unwrap();
         segment.outputs.column_mut(0).scale_mut(gain);
         segment.outputs.add_scalar_mut(trim);
         segment.inputs.add_scalar_mut(trim);
-        let after = validate(&other, &[segment], &settings, &Sequential).unwrap();
+        let after = validate(&scaled, &[segment], &settings, &Sequential).unwrap();
         for (before, after) in before.fit_percent.iter().zip(&after.fit_percent) {
             // Trims of 1e3 with outputs of 1 cost three of the sixteen digits, and the
             // least-squares solution about as many.
-            prop_assert!((before.unwrap() - after.unwrap()).abs() < 1e-5, "{:?} {:?}", before, after);
+            let change = (before.unwrap() - after.unwrap()).abs();
+            prop_assert!(change < 1e-5, "{:?} before, {:?} after", before, after);
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Limits on the cost of an optimality proof, and its cancellation.
+//! Limits on the work and memory of an optimality proof, and its cancellation.
 
 use std::cell::Cell;
 use std::sync::Arc;
@@ -23,7 +23,7 @@ use gdcm_study::{Engine, Study};
 use super::instances::gain_instances;
 use super::{solved, solved_within};
 
-/// Returns a pseudo-random number between -1 and 1 for an entry.
+/// Returns a number between -1 and 1 for an entry, irregular but reproducible.
 fn noise(output: usize, input: usize, seed: usize) -> f64 {
     (12.9898 * output as f64 + 78.233 * input as f64 + 37.719 * seed as f64).sin()
 }
@@ -43,7 +43,8 @@ fn twelve_by_eight(seed: usize) -> Problem {
     )
 }
 
-fn hard() -> Problem {
+/// Returns a reference instance whose proof exceeds small budgets.
+fn hard_problem() -> Problem {
     gain_instances()
         .into_iter()
         .find(|instance| instance.id == 271)
@@ -52,10 +53,10 @@ fn hard() -> Problem {
 }
 
 #[test]
-fn a_budget_of_work_too_small_for_the_proof_is_admitted() {
-    let least = solved(&hard()).objective;
+fn a_proof_that_exceeds_its_work_budget_is_reported_as_incomplete() {
+    let minimum = solved(&hard_problem()).objective;
     let solution = solved_within(
-        &hard(),
+        &hard_problem(),
         ProofBudget {
             work: 4_000,
             ..ProofBudget::default()
@@ -70,12 +71,12 @@ fn a_budget_of_work_too_small_for_the_proof_is_admitted() {
         solution.proof.outcome
     );
     assert!(solution.proof.nodes > 0 && !solution.proof.all_minima);
-    assert!(solution.proof.lower_bound <= least);
+    assert!(solution.proof.lower_bound <= minimum);
 }
 
 #[test]
-fn a_budget_of_memory_too_small_for_the_proof_is_admitted() {
-    // A node with 21 scales takes 3.9 kB.
+fn a_proof_that_exceeds_its_memory_budget_is_reported_as_incomplete() {
+    // A node with 21 scales takes 3.9 kB, so that about a dozen nodes fit.
     let solution = solved_within(
         &twelve_by_eight(0),
         ProofBudget {
@@ -95,33 +96,29 @@ fn a_budget_of_memory_too_small_for_the_proof_is_admitted() {
 }
 
 #[test]
-fn a_greater_budget_never_gives_a_lower_bound_that_is_worse() {
-    let bound = |work: u64| {
-        solved_within(
-            &twelve_by_eight(1),
-            ProofBudget {
-                work,
-                ..ProofBudget::default()
-            },
-        )
-        .proof
-    };
-    let bounds = [0, 100_000, 400_000, 1_600_000].map(|work| bound(work).lower_bound);
+fn a_larger_work_budget_never_lowers_the_lower_bound() {
+    let bounds = [0, 100_000, 400_000, 1_600_000].map(|work| {
+        let budget = ProofBudget {
+            work,
+            ..ProofBudget::default()
+        };
+        solved_within(&twelve_by_eight(1), budget).proof.lower_bound
+    });
     assert!(bounds.is_sorted() && bounds[0] < bounds[3], "{bounds:?}");
 }
 
 #[test]
-fn the_search_asks_whether_to_stop_at_every_half_millisecond_of_work() {
-    let asked = Cell::new(0_u64);
-    let count = || {
-        asked.set(asked.get() + 1);
+fn the_search_polls_for_cancellation_at_least_every_25_000_units_of_work() {
+    let polls = Cell::new(0_u64);
+    let count_poll = || {
+        polls.set(polls.get() + 1);
         false
     };
     let budget = ProofBudget {
         work: 2_000_000,
         ..ProofBudget::default()
     };
-    let solution = solve(&twelve_by_eight(1), budget, &count).unwrap();
+    let solution = solve(&twelve_by_eight(1), budget, &count_poll).unwrap();
     assert!(
         matches!(
             solution.proof.outcome,
@@ -133,80 +130,80 @@ fn the_search_asks_whether_to_stop_at_every_half_millisecond_of_work() {
         "{:?}",
         solution.proof
     );
-    // Queried at least every 25 000 work units: 20 000, plus a line search, which is not
-    // interrupted.
-    assert!(asked.get() >= 2_000_000 / 25_000, "{}", asked.get());
+    // The search polls every 20 000 units, about half a millisecond; a line search, which is not
+    // interrupted, may add to them.
+    assert!(polls.get() >= 2_000_000 / 25_000, "{} polls", polls.get());
 }
 
 #[test]
-fn a_search_that_is_stopped_has_no_answer() {
-    for questions in [0, 1, 10] {
-        let asked = Cell::new(0);
-        let stop = || asked.replace(asked.get() + 1) >= questions;
+fn a_cancelled_search_has_no_solution() {
+    for refusals in [0, 1, 10] {
+        let polls = Cell::new(0);
+        let stop = || polls.replace(polls.get() + 1) >= refusals;
         assert_eq!(
             solve(&twelve_by_eight(1), ProofBudget::default(), &stop),
             Err(ProblemError::Stopped)
         );
         assert!(
-            asked.get() <= questions + 2,
-            "{} questions after the first yes",
-            asked.get() - questions
+            polls.get() <= refusals + 2,
+            "polled {} times after the request to stop",
+            polls.get() - refusals
         );
     }
 }
 
 #[test]
-fn toggles_that_are_stopped_within_a_proof_keep_what_is_there() {
+fn toggles_cancelled_during_a_proof_keep_those_found_before() {
     let problem = gain_instances()[0].problem.clone();
     let solution = solved(&problem);
-    let asked = Cell::new(0);
-    let stop = || asked.replace(asked.get() + 1) >= 20;
+    let polls = Cell::new(0);
+    let stop = || polls.replace(polls.get() + 1) >= 20;
     let found = toggles(&problem, &solution, ProofBudget::default(), &stop).unwrap();
+    // Completed, there are 24: one for each entry of 6 outputs and 4 inputs.
     assert!(!found.is_empty() && found.len() < 24, "{}", found.len());
+}
+
+/// Returns a model without states, whose gains depend on `seed`.
+fn static_model(name: &str, origin: Origin, seed: usize) -> Model {
+    let a = DMatrix::zeros(0, 0);
+    let b = DMatrix::zeros(0, 8);
+    let c = DMatrix::zeros(12, 0);
+    let d = DMatrix::from_fn(12, 8, |output, input| {
+        (0.7 * noise(output, input, seed)).exp()
+    });
+    let state_space = StateSpace::new(a, b, c, d).unwrap();
+    Model::new(name, origin, Dynamics::StateSpace(state_space))
+}
+
+fn static_condition(index: usize) -> Condition {
+    let flight_state = FlightState {
+        id: ConditionId(index as i64),
+        name: format!("condition {index}"),
+        airspeed_kt: 10.0 * index as f64,
+        altitude: None,
+        altitude_ft: None,
+        weight: None,
+        mass_kg: None,
+    };
+    let nominal = Origin::Nominal { perturbation: None };
+    let identified = Origin::Identified {
+        method: None,
+        order: None,
+    };
+    let physics = static_model("nominal", nominal, 2 * index);
+    let flight = static_model("flight", identified, 2 * index + 1);
+    Condition::new(flight_state, vec![physics], vec![flight]).unwrap()
+}
+
+fn channels(letter: &str, count: usize) -> Vec<Channel> {
+    (0..count)
+        .map(|index| Channel::new(format!("{letter}{index}"), ""))
+        .collect()
 }
 
 /// Returns a dataset of static gains with twelve outputs and eight inputs; each condition has
 /// different physics and identified models.
 fn static_gains(conditions: usize) -> Dataset {
-    let model = |name: &str, origin, seed: usize| {
-        let gain = DMatrix::from_fn(12, 8, |output, input| {
-            (0.7 * noise(output, input, seed)).exp()
-        });
-        let a = DMatrix::zeros(0, 0);
-        let b = DMatrix::zeros(0, 8);
-        let c = DMatrix::zeros(12, 0);
-        Model::new(
-            name,
-            origin,
-            Dynamics::StateSpace(StateSpace::new(a, b, c, gain).unwrap()),
-        )
-    };
-    let condition = |index: usize| {
-        let flight_state = FlightState {
-            id: ConditionId(index as i64),
-            name: format!("condition {index}"),
-            airspeed_kt: 10.0 * index as f64,
-            altitude: None,
-            altitude_ft: None,
-            weight: None,
-            mass_kg: None,
-        };
-        let physics = model("nominal", Origin::Nominal { perturbation: None }, 2 * index);
-        let flight = model(
-            "flight",
-            Origin::Identified {
-                method: None,
-                order: None,
-            },
-            2 * index + 1,
-        );
-        Condition::new(flight_state, vec![physics], vec![flight]).unwrap()
-    };
-    let channels = |letter: &str, count| {
-        (0..count)
-            .map(|index| Channel::new(format!("{letter}{index}"), ""))
-            .collect()
-    };
     let header = DatasetHeader {
         name: "static gains".to_owned(),
         description: String::new(),
@@ -216,37 +213,37 @@ fn static_gains(conditions: usize) -> Dataset {
         band: Band::new(0.5, 12.0).unwrap(),
         parameters: Vec::new(),
     };
-    Dataset::new(header, (0..conditions).map(condition).collect()).unwrap()
+    Dataset::new(header, (0..conditions).map(static_condition).collect()).unwrap()
 }
 
-/// Cancels after a number of queries, and counts the queries.
+/// Cancels after a number of polls, and counts the polls.
 struct Impatient {
     patience: usize,
-    asked: AtomicUsize,
+    polls: AtomicUsize,
 }
 
 impl Progress for Impatient {
     fn cancelled(&self) -> bool {
-        self.asked.fetch_add(1, Ordering::Relaxed) >= self.patience
+        self.polls.fetch_add(1, Ordering::Relaxed) >= self.patience
     }
 
     fn advanced(&self, _done: usize, _total: usize) {}
 }
 
 #[test]
-fn an_analysis_is_stopped_in_the_middle_of_a_proof() {
+fn an_analysis_is_cancelled_in_the_middle_of_a_proof() {
     let study = Study::new(Arc::new(static_gains(20)));
     assert_eq!(
         study.settings.constrained.marked().collect::<Vec<Pair>>(),
         []
     );
-    // Each condition queries only a few times outside its proof, so that query 120 occurs during
-    // the first proofs.
+    // Each condition polls only a few times outside its proof, so that poll 120 occurs during the
+    // first proofs.
     let watch = Impatient {
         patience: 120,
-        asked: AtomicUsize::new(0),
+        polls: AtomicUsize::new(0),
     };
     assert_eq!(Engine::default().analyze(&study, &watch), Err(Cancelled));
-    // Tasks in progress and conditions not yet begun query once more each.
-    assert!(watch.asked.into_inner() <= 120 + 30);
+    // Tasks in progress and the conditions not yet begun, 20 in all, poll once more each.
+    assert!(watch.polls.into_inner() <= 120 + 30);
 }

@@ -1,4 +1,5 @@
-//! Sensitivities and toggles, compared with solutions of the modified problem.
+//! Sensitivities, and the objectives after toggling an entry between held and free, compared with
+//! solutions of the modified problem.
 
 use gdcm_method::correction::sensitivity::{ActiveConstraint, sensitivities};
 use gdcm_method::correction::toggles::toggles;
@@ -11,12 +12,8 @@ use super::solved;
 /// of the objective.
 const STEP_DB: f64 = 1e-4;
 
-fn gain_objective(problem: &Problem) -> f64 {
-    solved(problem).objective
-}
-
 #[test]
-fn gain_sensitivities_are_slopes_of_the_least_objective() {
+fn gain_sensitivities_are_slopes_of_the_minimum_objective() {
     let factor = 10f64.powf(STEP_DB / 20.0);
     for instance in gain_instances()
         .iter()
@@ -25,11 +22,10 @@ fn gain_sensitivities_are_slopes_of_the_least_objective() {
         let problem = &instance.problem;
         let solution = solved(problem);
         for sensitivity in sensitivities(problem, &solution) {
-            let with = |factor: f64| {
+            let objective_with = |factor: f64| {
                 let mut changed = problem.clone();
                 match sensitivity.constraint {
-                    // Exclude the held entry from the objective, in which its delta gain would
-                    // count too.
+                    // Move the target of the held entry only, without its term of the objective.
                     ActiveConstraint::Held(pair) => {
                         changed.fitted[pair] = false;
                         changed.delta[pair] = changed.delta[pair].map(|gain| gain * factor);
@@ -37,7 +33,7 @@ fn gain_sensitivities_are_slopes_of_the_least_objective() {
                     ActiveConstraint::LowerBound(_) => changed.bounds.lower *= factor,
                     ActiveConstraint::UpperBound(_) => changed.bounds.upper *= factor,
                 }
-                gain_objective(&changed)
+                solved(&changed).objective
             };
             let several_on_bound = sensitivities(problem, &solution)
                 .iter()
@@ -54,12 +50,12 @@ fn gain_sensitivities_are_slopes_of_the_least_objective() {
                 // sum of their sensitivities.
                 continue;
             }
-            let slope = (with(factor) - with(1.0 / factor)) / (2.0 * STEP_DB);
+            let slope = (objective_with(factor) - objective_with(1.0 / factor)) / (2.0 * STEP_DB);
             // Tolerance for second-order terms of a step of 1e-4 dB, and for the rounding of an
             // objective of about 1 divided by the step.
             assert!(
                 (slope - sensitivity.per_unit).abs() <= 1e-6 + 1e-4 * slope.abs(),
-                "{}: {sensitivity:?} {slope}",
+                "{}: {sensitivity:?}, slope {slope}",
                 instance.id
             );
         }
@@ -67,7 +63,7 @@ fn gain_sensitivities_are_slopes_of_the_least_objective() {
 }
 
 #[test]
-fn delay_sensitivities_are_slopes_of_the_least_objective() {
+fn delay_sensitivities_are_slopes_of_the_minimum_objective() {
     let step_s = 1e-6;
     for instance in delay_instances().iter().filter(|instance| instance.matched) {
         let problem = &instance.problem;
@@ -76,14 +72,16 @@ fn delay_sensitivities_are_slopes_of_the_least_objective() {
             let ActiveConstraint::Held(pair) = sensitivity.constraint else {
                 continue;
             };
-            let with = |step_s: f64| {
+            let objective_with = |step_s: f64| {
                 let mut changed = problem.clone();
                 changed.fitted[pair] = false;
                 changed.delta[pair] = changed.delta[pair].map(|delay| delay + step_s);
                 solved(&changed).objective
             };
-            let up = (with(step_s) - with(0.0)) / (1e3 * step_s);
-            let down = (with(0.0) - with(-step_s)) / (1e3 * step_s);
+            // Per millisecond, the unit of a delay sensitivity.
+            let base = objective_with(0.0);
+            let up = (objective_with(step_s) - base) / (1e3 * step_s);
+            let down = (base - objective_with(-step_s)) / (1e3 * step_s);
             // Where a bound becomes active, the slopes to either side differ, and the multiplier
             // lies between them.
             let low = up.min(down);
@@ -91,7 +89,7 @@ fn delay_sensitivities_are_slopes_of_the_least_objective() {
             // 1e-7: second-order terms of a microsecond, relative to objectives of about 0.01 s^2.
             assert!(
                 (low - 1e-7..=high + 1e-7).contains(&sensitivity.per_unit),
-                "{}: {sensitivity:?} {up} {down}",
+                "{}: {sensitivity:?}, slopes {up} and {down}",
                 instance.id
             );
         }
@@ -99,23 +97,23 @@ fn delay_sensitivities_are_slopes_of_the_least_objective() {
 }
 
 #[test]
-fn the_sensitivities_are_those_of_the_held_entries() {
+fn only_held_entries_have_sensitivities_within_wide_bounds() {
     let instance = &gain_instances()[0];
     let solution = solved(&instance.problem);
-    let all = sensitivities(&instance.problem, &solution);
+    let found = sensitivities(&instance.problem, &solution);
     // The five held entries of Table 2; the wide bounds of this instance are not active.
-    assert_eq!(all.len(), 5);
-    for sensitivity in all {
-        assert!(
-            matches!(sensitivity.constraint, ActiveConstraint::Held(pair) if instance.problem.constrained[pair]),
-            "{sensitivity:?}"
-        );
+    assert_eq!(found.len(), 5);
+    for sensitivity in found {
+        let ActiveConstraint::Held(pair) = sensitivity.constraint else {
+            panic!("{sensitivity:?}")
+        };
+        assert!(instance.problem.constrained[pair], "{sensitivity:?}");
         assert_eq!(sensitivity.step(), 1.0);
     }
 }
 
 #[test]
-fn the_table_of_toggles_holds_what_solving_each_toggle_gives() {
+fn each_gain_toggle_has_the_objective_of_the_toggled_problem() {
     let instance = &gain_instances()[0];
     let solution = solved(&instance.problem);
     let toggles = toggles(
@@ -130,7 +128,12 @@ fn the_table_of_toggles_holds_what_solving_each_toggle_gives() {
         let mut changed = instance.problem.clone();
         changed.constrained[toggle.pair] = !changed.constrained[toggle.pair];
         assert_eq!(toggle.held_now, instance.problem.constrained[toggle.pair]);
-        assert_eq!(toggle.after, gain_objective(&changed), "{:?}", toggle.pair);
+        assert_eq!(
+            toggle.after,
+            solved(&changed).objective,
+            "{:?}",
+            toggle.pair
+        );
         assert_eq!(toggle.before, solution.objective);
         if toggle.held_now {
             assert!(toggle.after <= toggle.before, "{:?}", toggle.pair);
@@ -139,7 +142,7 @@ fn the_table_of_toggles_holds_what_solving_each_toggle_gives() {
 }
 
 #[test]
-fn the_table_of_delay_toggles_holds_what_solving_each_toggle_gives() {
+fn each_delay_toggle_has_the_objective_of_the_toggled_problem() {
     let instance = &delay_instances()[0];
     let solution = solved(&instance.problem);
     let toggles = toggles(
@@ -167,7 +170,7 @@ fn the_table_of_delay_toggles_holds_what_solving_each_toggle_gives() {
 }
 
 #[test]
-fn toggles_stop_when_told_to() {
+fn cancelled_toggles_are_empty() {
     let gains = &gain_instances()[0].problem;
     let solution = solved(gains);
     assert_eq!(
@@ -183,7 +186,7 @@ fn toggles_stop_when_told_to() {
 }
 
 #[test]
-fn a_bound_that_acts_has_a_multiplier_of_the_right_sign() {
+fn an_active_bound_has_a_multiplier_of_the_right_sign() {
     let mut problem = gain_instances()[0].problem.clone();
     problem.bounds = Bounds {
         lower: 0.8,
@@ -197,6 +200,7 @@ fn a_bound_that_acts_has_a_multiplier_of_the_right_sign() {
         .collect();
     assert!(!bounds.is_empty());
     for bound in bounds {
+        // Raising an upper bound lowers the minimum; raising a lower bound raises it.
         match bound.constraint {
             ActiveConstraint::UpperBound(_) => assert!(bound.per_unit < 0.0, "{bound:?}"),
             _ => assert!(bound.per_unit > 0.0, "{bound:?}"),

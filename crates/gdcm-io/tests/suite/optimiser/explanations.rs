@@ -1,15 +1,18 @@
-//! Tests of every explanation: the proposed remedy suffices, and a smaller one does not.
+//! Explanations of constraints that cannot be satisfied: the named conflict is minimal, and the
+//! proposed remedy, a bound or an entry to free, suffices while a smaller change does not.
 
 use proptest::prelude::*;
 
 use gdcm_method::correction::conflict::{Conflict, ConflictKind};
-use gdcm_method::correction::{Bounds, Channel, GainObjective, Problem, ProofBudget, Quantity};
+use gdcm_method::correction::{
+    Bounds, Channel, GainObjective, Outcome, Problem, ProofBudget, Quantity,
+};
 use gdcm_model::dataset::{Pair, PairTable};
 
 use super::instances::{delay_instances, gain_instances, on_axis};
 use super::random::{Pattern, delay_problems, gain_problems};
 use super::{solved, solved_within};
-use crate::made_up::tries;
+use crate::synthetic::tries;
 
 /// Budget without a proof, which is not needed to decide whether constraints can be satisfied.
 const BUDGET: ProofBudget = ProofBudget {
@@ -18,6 +21,7 @@ const BUDGET: ProofBudget = ProofBudget {
     bytes: 0,
 };
 
+/// Returns the problem with only these entries held.
 fn holding(problem: &Problem, entries: &[Pair]) -> Problem {
     Problem {
         constrained: problem.constrained.map(|pair, _| entries.contains(&pair)),
@@ -25,6 +29,7 @@ fn holding(problem: &Problem, entries: &[Pair]) -> Problem {
     }
 }
 
+/// Returns the problem with one of its held entries free.
 fn without(problem: &Problem, freed: Pair) -> Problem {
     Problem {
         constrained: problem.constrained.map(|pair, held| *held && pair != freed),
@@ -32,6 +37,7 @@ fn without(problem: &Problem, freed: Pair) -> Problem {
     }
 }
 
+/// Returns the problem with other bounds.
 fn bounded(problem: &Problem, lower: f64, upper: f64) -> Problem {
     Problem {
         bounds: Bounds { lower, upper },
@@ -39,6 +45,7 @@ fn bounded(problem: &Problem, lower: f64, upper: f64) -> Problem {
     }
 }
 
+/// Returns whether all held entries can be matched.
 fn is_matched(problem: &Problem) -> bool {
     solved_within(problem, BUDGET).matched
 }
@@ -82,7 +89,7 @@ fn a_product_above_the_bounds_is_explained() {
     assert!(is_matched(&bounded(&problem, 0.7, 1.59)));
     assert!(!is_matched(&bounded(&problem, 0.7, 1.58)));
     let miss = &solution.unmatched[0];
-    // Computed by hand: 20 log10 (1.96 / 2.5).
+    // The bounds allow 1.4^2 = 1.96: 20 log10 (1.96 / 2.5) = -2.114 dB.
     assert!((miss.excess + 2.114).abs() <= 1e-3, "{}", miss.excess);
 }
 
@@ -139,6 +146,8 @@ fn two_entries_that_share_an_input_are_explained_by_their_ratio() {
     };
     assert_eq!([greater, lesser], [Channel::Output(4), Channel::Output(2)]);
     assert!((asked - 2.5).abs() < 1e-12, "{asked}");
+    // The outputs must differ by a factor of 2.5, the bounds by 2: 0.7 * 2.5 = 1.75 and 1.4 / 2.5 =
+    // 0.56 suffice.
     assert_eq!((upper, lower), (1.75, Some(0.56)));
     assert_eq!(conflict.entries, [Pair::new(2, 2), Pair::new(4, 2)]);
     assert!(
@@ -197,9 +206,9 @@ fn a_cycle_of_constraints_is_explained() {
 }
 
 /// Returns a problem like [`table_two`] in which a loop of four entries is held; their delta gains
-/// disagree by `mismatch_db`.
+/// disagree by `mismatch_db`, and a mismatch up to `agreement` \[dB\] is accepted.
 fn near_loop(mismatch_db: f64, agreement: f64) -> Problem {
-    let loop_of = [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(output, input)| Pair::new(output, input));
+    let entries = [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(output, input)| Pair::new(output, input));
     let problem = table_two(
         &[(0, 0, 10_f64.powf(mismatch_db / 20.0))],
         Bounds {
@@ -209,11 +218,11 @@ fn near_loop(mismatch_db: f64, agreement: f64) -> Problem {
     );
     Problem {
         agreement,
-        ..holding(&problem, &loop_of)
+        ..holding(&problem, &entries)
     }
 }
 
-/// Returns the deviation of a loop, without its sign \[dB\].
+/// Returns the magnitude of the mismatch of a loop \[dB\].
 fn loop_mismatch_db(conflict: &Conflict) -> f64 {
     match conflict.kind {
         ConflictKind::Loop { mismatch } => mismatch.abs(),
@@ -222,7 +231,7 @@ fn loop_mismatch_db(conflict: &Conflict) -> f64 {
 }
 
 #[test]
-fn a_loop_that_disagrees_by_less_than_the_tolerance_counts_as_agreeing_and_is_said_to() {
+fn a_loop_that_disagrees_by_less_than_the_tolerance_is_matched_and_reported() {
     let agreeing = solved_within(&near_loop(0.04, 0.05), BUDGET);
     assert!(
         agreeing.matched && agreeing.unmatched.is_empty() && agreeing.conflicts.is_empty(),
@@ -234,11 +243,10 @@ fn a_loop_that_disagrees_by_less_than_the_tolerance_counts_as_agreeing_and_is_sa
     };
     assert!((loop_mismatch_db(agreement) - 0.04).abs() < 1e-9);
     // Least squares distributes the mismatch evenly over the four entries.
-    for (pair, target) in agreeing
-        .targets
-        .iter()
-        .filter_map(|(pair, target)| Some((pair, (*target)?)))
-    {
+    for (pair, target) in agreeing.targets.iter() {
+        let Some(target) = *target else {
+            continue;
+        };
         let net = agreeing.outputs[pair.output] * agreeing.inputs[pair.input];
         let wanted = near_loop(0.04, 0.05).delta[pair];
         assert!((net / target).ln().abs() < 1e-8);
@@ -253,7 +261,7 @@ fn a_loop_that_disagrees_by_less_than_the_tolerance_counts_as_agreeing_and_is_sa
 }
 
 #[test]
-fn what_disagrees_by_little_is_not_rounded_to_nothing() {
+fn a_small_mismatch_is_not_rounded_to_zero() {
     let solution = solved_within(&near_loop(0.002, 0.0), BUDGET);
     assert!((loop_mismatch_db(&solution.conflicts[0]) - 0.002).abs() < 1e-9);
     // Least squares distributes the mismatch evenly over the four entries.
@@ -261,6 +269,7 @@ fn what_disagrees_by_little_is_not_rounded_to_nothing() {
     for miss in &solution.unmatched {
         assert!((miss.excess.abs() - 0.0005).abs() < 1e-7, "{miss:?}");
     }
+    // The bounds allow 1.96.
     let problem = table_two(
         &[(0, 1, 1.960_1)],
         Bounds {
@@ -280,11 +289,12 @@ fn what_disagrees_by_little_is_not_rounded_to_nothing() {
 }
 
 #[test]
-fn what_a_near_loop_needs_does_not_hide_what_a_real_conflict_needs() {
+fn a_loop_within_tolerance_does_not_hide_the_remedy_of_a_real_conflict() {
     let mut problem = near_loop(0.04, 0.05);
-    let other = Pair::new(2, 2);
-    problem.constrained[other] = true;
-    problem.delta[other] = Some(4.5);
+    let unreachable = Pair::new(2, 2);
+    problem.constrained[unreachable] = true;
+    // The bounds allow 2^2 = 4.
+    problem.delta[unreachable] = Some(4.5);
     let solution = solved_within(&problem, BUDGET);
     assert_eq!(
         (solution.unmatched.len(), solution.agreeing.len()),
@@ -292,13 +302,13 @@ fn what_a_near_loop_needs_does_not_hide_what_a_real_conflict_needs() {
         "{solution:?}"
     );
     let remedy = solution.remedy.unwrap();
-    assert_eq!(remedy.free, [other]);
-    assert!(is_matched(&without(&problem, other)));
+    assert_eq!(remedy.free, [unreachable]);
+    assert!(is_matched(&without(&problem, unreachable)));
     assert!(is_matched(&bounded(&problem, 0.5, remedy.upper.unwrap())));
 }
 
 #[test]
-fn unreachable_reference_instances_are_explained_as_they_were_made() {
+fn unreachable_reference_instances_have_one_conflict_and_a_remedy() {
     for instance in gain_instances()
         .iter()
         .filter(|instance| instance.kind == "infeasible")
@@ -324,7 +334,7 @@ fn unreachable_reference_instances_are_explained_as_they_were_made() {
 }
 
 #[test]
-fn an_answer_has_a_proof_its_misses_and_its_remedies() {
+fn an_unmatched_solution_has_a_proof_its_residuals_and_a_remedy() {
     let problem = table_two(
         &[(2, 2, 0.6), (4, 2, 1.5)],
         Bounds {
@@ -333,32 +343,32 @@ fn an_answer_has_a_proof_its_misses_and_its_remedies() {
         },
     );
     let solution = solved(&problem);
-    assert!(matches!(
-        solution.proof.outcome,
-        gdcm_method::correction::Outcome::Proven { .. }
-    ));
+    assert!(matches!(solution.proof.outcome, Outcome::Proven { .. }));
     // The ratio of 2.5 is reduced to 2 by the factor 1.25, of which each entry takes half (0.97
     // dB).
-    let [rate, force] = solution.unmatched.as_slice() else {
+    let [rate_miss, force_miss] = solution.unmatched.as_slice() else {
         panic!("{:?}", solution.unmatched)
     };
-    assert_eq!([rate.pair, force.pair], [Pair::new(2, 2), Pair::new(4, 2)]);
-    assert!(
-        (rate.target - 0.6 * 1.25_f64.sqrt()).abs() < 1e-6,
-        "{rate:?}"
+    assert_eq!(
+        [rate_miss.pair, force_miss.pair],
+        [Pair::new(2, 2), Pair::new(4, 2)]
     );
     assert!(
-        (force.target - 1.5 / 1.25_f64.sqrt()).abs() < 1e-6,
-        "{force:?}"
+        (rate_miss.target - 0.6 * 1.25_f64.sqrt()).abs() < 1e-6,
+        "{rate_miss:?}"
     );
-    assert!((rate.excess - 0.969).abs() < 1e-3 && (force.excess + 0.969).abs() < 1e-3);
+    assert!(
+        (force_miss.target - 1.5 / 1.25_f64.sqrt()).abs() < 1e-6,
+        "{force_miss:?}"
+    );
+    assert!((rate_miss.excess - 0.969).abs() < 1e-3 && (force_miss.excess + 0.969).abs() < 1e-3);
     let remedy = solution.remedy.unwrap();
     assert_eq!((remedy.upper, remedy.lower), (Some(1.75), Some(0.56)));
-    assert_eq!(remedy.free, [rate.pair, force.pair]);
+    assert_eq!(remedy.free, [rate_miss.pair, force_miss.pair]);
 }
 
 #[test]
-fn a_delay_that_would_have_to_be_negative_is_explained_as_lead() {
+fn a_required_negative_delay_is_explained_as_a_lead() {
     let mut delta_s = PairTable::filled(6, 4, Some(0.01));
     delta_s[Pair::new(0, 1)] = Some(-0.034);
     let problem = Problem::delays(delta_s, on_axis(), 0.1);
@@ -367,9 +377,10 @@ fn a_delay_that_would_have_to_be_negative_is_explained_as_lead() {
         panic!("{:?}", solution.unmatched)
     };
     assert_eq!(miss.target, 0.0);
-    assert!(
-        matches!(miss.why.kind, ConflictKind::BelowLower { asked, .. } if (asked + 0.034).abs() <= 1e-15)
-    );
+    assert!(matches!(
+        miss.why.kind,
+        ConflictKind::BelowLower { asked, .. } if (asked + 0.034).abs() <= 1e-15
+    ));
     // 0.034 s at 12 rad/s are 0.408 rad.
     assert!((miss.phase_left_deg(12.0) - 0.408_f64.to_degrees()).abs() <= 1e-12);
     assert!(miss.why.is_lone_lead());
@@ -378,7 +389,7 @@ fn a_delay_that_would_have_to_be_negative_is_explained_as_lead() {
 }
 
 #[test]
-fn a_lead_that_rounding_makes_is_none() {
+fn a_lead_as_small_as_rounding_counts_as_matched() {
     let mut delta_s = PairTable::filled(6, 4, Some(0.0));
     delta_s[Pair::new(0, 1)] = Some(-2.6e-17);
     delta_s[Pair::new(1, 0)] = Some(1.3e-17);
@@ -413,13 +424,14 @@ fn delays_that_differ_by_more_than_the_bound_are_explained() {
     else {
         panic!("{:?}", solution.conflicts)
     };
+    // The difference of the delays, 0.0618 s - 0.001 s.
     assert_eq!(*upper, 0.0608);
     assert!(is_matched(&bounded(&problem, 0.0, 0.0608)));
     assert!(!is_matched(&bounded(&problem, 0.0, 0.0607)));
 }
 
 #[test]
-fn unreachable_reference_delays_are_all_explained() {
+fn every_unreachable_reference_delay_is_explained() {
     for instance in delay_instances()
         .iter()
         .filter(|instance| !instance.matched)
@@ -441,15 +453,20 @@ fn next_below(value: f64) -> f64 {
     value - 10f64.powi(value.log10().floor() as i32 - 2)
 }
 
+/// Returns the next higher value with three significant digits.
 fn next_above(value: f64) -> f64 {
     value + 10f64.powi(value.log10().floor() as i32 - 2)
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: tries(64, 500), failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig {
+        cases: tries(64, 500),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    })]
 
     #[test]
-    fn every_gain_conflict_is_impossible_as_it_is_and_possible_without_any_one_of_its_parts(
+    fn every_gain_conflict_is_unmatched_and_matched_without_any_of_its_entries(
         problem in gain_problems((6, 4), 1.5, Pattern::Any)
     ) {
         let problem = Problem { quantity: Quantity::Gain(GainObjective::Decibel), ..problem };
@@ -457,33 +474,35 @@ proptest! {
             let alone = holding(&problem, &conflict.entries);
             prop_assert!(!is_matched(&alone), "{:?}", conflict);
             for &pair in &conflict.entries {
-                prop_assert!(is_matched(&without(&alone, pair)), "{:?} without {:?}", conflict, pair);
+                let fewer = without(&alone, pair);
+                prop_assert!(is_matched(&fewer), "{:?} without {:?}", conflict, pair);
             }
             let Bounds { lower, upper } = problem.bounds;
             match conflict.kind {
                 ConflictKind::AboveUpper { upper: enough, .. } => {
                     prop_assert!(is_matched(&bounded(&alone, lower, enough)));
-                    prop_assert!(!is_matched(&bounded(&alone, lower, next_below(enough).max(upper))));
+                    let less = next_below(enough).max(upper);
+                    prop_assert!(!is_matched(&bounded(&alone, lower, less)));
                 }
                 ConflictKind::BelowLower { lower: Some(enough), .. } => {
                     prop_assert!(is_matched(&bounded(&alone, enough, upper)));
-                    prop_assert!(!is_matched(&bounded(&alone, next_above(enough).min(lower), upper)));
+                    let less = next_above(enough).min(lower);
+                    prop_assert!(!is_matched(&bounded(&alone, less, upper)));
                 }
                 ConflictKind::TooFarApart { upper: high, lower: Some(low), .. } => {
                     // The explanation concerns the ratio alone: a product along the same path may
                     // need even wider bounds.
-                    let stretched = |lower: f64, upper: f64| bounded(&alone, lower, upper);
-                    prop_assert!(!is_matched(&stretched(lower, next_below(high).max(upper))));
-                    prop_assert!(!is_matched(&stretched(next_above(low).min(lower), upper)));
+                    prop_assert!(!is_matched(&bounded(&alone, lower, next_below(high).max(upper))));
+                    prop_assert!(!is_matched(&bounded(&alone, next_above(low).min(lower), upper)));
                 }
                 ConflictKind::Loop { .. } => prop_assert!(!is_matched(&bounded(&alone, 1e-4, 1e4))),
-                kind => prop_assert!(false, "every conflict of gains is clear: {:?}", kind),
+                kind => prop_assert!(false, "conflict without a sufficient bound: {:?}", kind),
             }
         }
     }
 
     #[test]
-    fn every_gain_remedy_makes_all_reachable_and_a_smaller_change_does_not(
+    fn every_gain_remedy_suffices_and_a_smaller_change_does_not(
         problem in gain_problems((6, 4), 1.0, Pattern::Any)
     ) {
         let problem = Problem { quantity: Quantity::Gain(GainObjective::Decibel), ..problem };
@@ -493,66 +512,62 @@ proptest! {
             let Bounds { lower, upper } = problem.bounds;
             if let Some(enough) = remedy.upper {
                 prop_assert!(is_matched(&bounded(&problem, lower, enough)), "{}", enough);
-                prop_assert!(!is_matched(&bounded(&problem, lower, next_below(enough).max(upper))), "{}", enough);
+                let less = next_below(enough).max(upper);
+                prop_assert!(!is_matched(&bounded(&problem, lower, less)), "{}", enough);
             } else {
                 prop_assert!(!is_matched(&bounded(&problem, lower, 1e4)));
             }
             if let Some(enough) = remedy.lower {
                 prop_assert!(is_matched(&bounded(&problem, enough, upper)), "{}", enough);
-                prop_assert!(!is_matched(&bounded(&problem, next_above(enough).min(lower), upper)), "{}", enough);
+                let less = next_above(enough).min(lower);
+                prop_assert!(!is_matched(&bounded(&problem, less, upper)), "{}", enough);
             } else {
                 prop_assert!(!is_matched(&bounded(&problem, 1e-4, upper)));
             }
             for pair in problem.constrained.marked() {
-                prop_assert_eq!(is_matched(&without(&problem, pair)), remedy.free.contains(&pair), "{:?}", pair);
+                let is_remedy = remedy.free.contains(&pair);
+                prop_assert_eq!(is_matched(&without(&problem, pair)), is_remedy, "{:?}", pair);
             }
         }
     }
 
     #[test]
-    fn every_delay_conflict_is_impossible_as_it_is_and_possible_without_any_one_of_its_parts(
+    fn every_delay_conflict_is_unmatched_and_matched_without_any_of_its_entries(
         problem in delay_problems((6, 4), Pattern::Any)
     ) {
         for conflict in solved(&problem).conflicts {
-            let alone = Problem {
-                constrained: problem.constrained.map(|pair, _| conflict.entries.contains(&pair)),
-                ..problem.clone()
-            };
+            let alone = holding(&problem, &conflict.entries);
             prop_assert!(!is_matched(&alone), "{:?}", conflict);
             for &freed in &conflict.entries {
-                let fewer = Problem {
-                    constrained: alone.constrained.map(|pair, held| *held && pair != freed),
-                    ..alone.clone()
-                };
+                let fewer = without(&alone, freed);
                 prop_assert!(is_matched(&fewer), "{:?} without {:?}", conflict, freed);
             }
             match conflict.kind {
-                ConflictKind::AboveUpper { upper, .. } | ConflictKind::TooFarApart { upper, .. } => {
+                ConflictKind::AboveUpper { upper, .. }
+                | ConflictKind::TooFarApart { upper, .. } => {
                     let less = bounded(&alone, 0.0, next_below(upper).max(problem.bounds.upper));
                     prop_assert!(!is_matched(&less), "{}", upper);
                 }
                 ConflictKind::BelowLower { .. } | ConflictKind::Loop { .. } => {
                     prop_assert!(!is_matched(&bounded(&alone, 0.0, 10.0)));
                 }
-                ConflictKind::Unclear => prop_assert!(false, "every conflict is clear"),
+                ConflictKind::Unclear => prop_assert!(false, "conflict without an explanation"),
             }
         }
     }
 
     #[test]
-    fn every_delay_remedy_makes_all_reachable(problem in delay_problems((6, 4), Pattern::Any)) {
+    fn every_delay_remedy_suffices(problem in delay_problems((6, 4), Pattern::Any)) {
         let solution = solved(&problem);
         if let Some(remedy) = solution.remedy {
             match remedy.upper {
-                Some(upper) => prop_assert!(is_matched(&bounded(&problem, 0.0, upper)), "{}", upper),
+                Some(upper) => {
+                    prop_assert!(is_matched(&bounded(&problem, 0.0, upper)), "{}", upper);
+                }
                 None => prop_assert!(!is_matched(&bounded(&problem, 0.0, 10.0))),
             }
             for freed in remedy.free {
-                let fewer = Problem {
-                    constrained: problem.constrained.map(|pair, held| *held && pair != freed),
-                    ..problem.clone()
-                };
-                prop_assert!(is_matched(&fewer), "{:?}", freed);
+                prop_assert!(is_matched(&without(&problem, freed)), "{:?}", freed);
             }
         }
     }

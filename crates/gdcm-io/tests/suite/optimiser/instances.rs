@@ -1,16 +1,20 @@
-//! Loads the reference instances in `tests/data`.
+//! Loads the reference instances in `tests/data/reference`.
 
 use serde_json::Value;
 
 use gdcm_method::correction::{Bounds, Problem};
 use gdcm_model::dataset::{Pair, PairTable};
 
-/// An instance of equation (7) with its certified minimum.
+/// An instance of equation (7) with its minimum, certified by an independent interval branch and
+/// bound to a relative gap of 1e-8.
 pub struct GainInstance {
     pub id: u64,
+    /// How the instance was generated: `base` (realistic gains), `wide`, `infeasible`,
+    /// `cycle_consistent`, `cycle_inconsistent` or `edge` (a single feasible point).
     pub kind: String,
     pub problem: Problem,
     pub objective: f64,
+    /// Whether all held entries can be matched.
     pub matched: bool,
     /// Maximum deviation of a held entry, in natural logarithms; 0 if all are matched.
     pub residual: f64,
@@ -18,9 +22,10 @@ pub struct GainInstance {
     pub outputs: Vec<f64>,
     /// Whether several combinations of gains have the same objective, so that only their products
     /// can be compared.
-    pub loose: bool,
+    pub has_free_scale: bool,
 }
 
+/// Returns a list of numbers; empty for any other value.
 pub fn numbers(value: &Value) -> Vec<f64> {
     value
         .as_array()
@@ -52,6 +57,8 @@ pub fn gain_instances() -> Vec<GainInstance> {
 }
 
 fn gain_instance(instance: &Value) -> GainInstance {
+    // If the held entries cannot be matched, stage 1 finds the closest targets that can be, and
+    // stage 2 the minimum for these targets.
     let matched = instance["two_stage"].is_null();
     let answer = if matched {
         instance
@@ -77,7 +84,7 @@ fn gain_instance(instance: &Value) -> GainInstance {
         residual: answer["residual_ln"].as_f64().unwrap_or(0.0),
         inputs: numbers(&answer["k_in"]),
         outputs: numbers(&answer["k_out"]),
-        loose: instance["nonunique_scale"].as_bool().unwrap_or(false),
+        has_free_scale: instance["nonunique_scale"].as_bool().unwrap_or(false),
     }
 }
 
@@ -91,7 +98,7 @@ pub struct DelayInstance {
     pub outputs: Vec<f64>,
 }
 
-/// The five on-axis entries of Table 2, [output, input].
+/// The five on-axis entries of Table 2, (output, input).
 pub const ON_AXIS: [(usize, usize); 5] = [(0, 1), (1, 0), (2, 2), (4, 2), (5, 3)];
 
 /// Marks the entries of Table 2 among 6 outputs and 4 inputs.

@@ -1,9 +1,10 @@
-//! Karush-Kuhn-Tucker residuals of a solution, computed independently of the solver.
+//! Residuals of the Karush-Kuhn-Tucker conditions at a solution, computed independently of the
+//! solver.
 
-use gdcm_method::correction::{GainObjective, Problem, Quantity, Solution};
+use gdcm_method::correction::{Bounds, GainObjective, Problem, Quantity, Solution};
 use gdcm_model::dataset::Pair;
 
-/// Optimality data of a minimisation at one point. Channels: inputs, then outputs.
+/// Gradient and active constraints of a minimisation at a point. Channels: inputs, then outputs.
 struct Point {
     inputs: usize,
     gradient: Vec<f64>,
@@ -22,6 +23,8 @@ pub fn gain_residual(problem: &Problem, solution: &Solution) -> f64 {
     let mut gradient = vec![0.0; inputs + outputs];
     let mut sizes = vec![1e-300; inputs + outputs];
     let mut add = |channels: &[usize], delta: f64, gain: f64, weight: f64| {
+        // Derivatives of (gain - delta)^2, or of (20 log10 gain/delta)^2, by the natural logarithm
+        // of the gain.
         let decibel = 2.0 * weight * (20.0 / std::f64::consts::LN_10).powi(2);
         let (slope, size) = match problem.quantity {
             Quantity::Gain(GainObjective::Ratio) => (
@@ -44,19 +47,13 @@ pub fn gain_residual(problem: &Problem, solution: &Solution) -> f64 {
     for (output, gain) in solution.outputs.iter().enumerate() {
         add(&[inputs + output], 1.0, *gain, problem.alpha);
     }
-    let ends = (problem.bounds.lower, problem.bounds.upper);
-    let on = |gain: &f64| {
-        (
-            *gain <= ends.0 * (1.0 + 1e-12),
-            *gain >= ends.1 * (1.0 - 1e-12),
-        )
-    };
-    let bounds = solution
-        .inputs
-        .iter()
-        .chain(&solution.outputs)
-        .map(on)
-        .collect();
+    let Bounds { lower, upper } = problem.bounds;
+    let mut bounds = Vec::new();
+    for gain in solution.inputs.iter().chain(&solution.outputs) {
+        let at_lower = *gain <= lower * (1.0 + 1e-12);
+        let at_upper = *gain >= upper * (1.0 - 1e-12);
+        bounds.push((at_lower, at_upper));
+    }
     residual(&Point {
         inputs,
         gradient,
@@ -86,13 +83,10 @@ pub fn delay_residual(problem: &Problem, solution: &Solution) -> f64 {
         // Typical delays of 0.1 s.
         sizes[inputs + output] += 0.2 * problem.alpha;
     }
-    let on = |delay: &f64| (*delay == 0.0, *delay == problem.bounds.upper);
-    let bounds = solution
-        .inputs
-        .iter()
-        .chain(&solution.outputs)
-        .map(on)
-        .collect();
+    let mut bounds = Vec::new();
+    for delay in solution.inputs.iter().chain(&solution.outputs) {
+        bounds.push((*delay == 0.0, *delay == problem.bounds.upper));
+    }
     residual(&Point {
         inputs,
         gradient,
@@ -107,18 +101,20 @@ pub fn delay_residual(problem: &Problem, solution: &Solution) -> f64 {
 /// outputs down by the same amount), and not beyond a bound of any of its channels.
 fn residual(point: &Point) -> f64 {
     let channels = point.gradient.len();
-    let mut piece: Vec<usize> = (0..channels).collect();
+    // Group of each channel, named after one of its channels.
+    let mut group: Vec<usize> = (0..channels).collect();
     for pair in &point.held {
-        let kept = piece[pair.input];
-        let merged = piece[point.inputs + pair.output];
-        piece
-            .iter_mut()
-            .filter(|piece| **piece == merged)
-            .for_each(|piece| *piece = kept);
+        let kept = group[pair.input];
+        let merged = group[point.inputs + pair.output];
+        for group in &mut group {
+            if *group == merged {
+                *group = kept;
+            }
+        }
     }
     let mut worst = 0.0_f64;
     for name in 0..channels {
-        let members = (0..channels).filter(|&channel| piece[channel] == name);
+        let members = (0..channels).filter(|&channel| group[channel] == name);
         let mut slope = 0.0;
         let mut size = 1e-300;
         let mut may_rise = true;

@@ -21,37 +21,39 @@ const BUDGET: ProofBudget = ProofBudget {
     bytes: 8_000_000,
 };
 
-/// Returns the known gain of a channel: different values between 0.7 and 1.4.
-fn gain(channel: usize) -> f64 {
+/// Returns the true gain of a channel (inputs follow the outputs): different values between 0.7 and
+/// 1.4.
+fn true_gain(channel: usize) -> f64 {
     (0.35 * (1.7 * channel as f64).sin()).exp()
 }
 
-/// Returns the products of the known gains, each with an error of up to 10 %.
+/// Returns the products of the true gains, each with an error of up to 10 %.
 fn delta_gains() -> PairTable<Option<f64>> {
     PairTable::from_fn(MOST_CHANNELS, MOST_CHANNELS, |Pair { output, input }| {
-        let off = 0.1 * (12.9898 * output as f64 + 78.233 * input as f64).sin();
-        Some(gain(output) * gain(MOST_CHANNELS + input) * (1.0 + off))
+        let error = 0.1 * (12.9898 * output as f64 + 78.233 * input as f64).sin();
+        Some(true_gain(output) * true_gain(MOST_CHANNELS + input) * (1.0 + error))
     })
 }
 
 /// Marks held entries that form a path through all channels, the longest possible chain of
 /// constraints.
-fn path() -> PairTable<bool> {
+fn path_through_all_channels() -> PairTable<bool> {
     PairTable::from_fn(MOST_CHANNELS, MOST_CHANNELS, |pair| {
         pair.output == pair.input || pair.output == pair.input + 1
     })
 }
 
 #[test]
-fn consistent_products_are_all_held() {
-    let delta = delta_gains()
-        .map(|Pair { output, input }, _| Some(gain(output) * gain(MOST_CHANNELS + input)));
+fn all_entries_are_held_if_they_are_consistent() {
+    let delta = delta_gains().map(|Pair { output, input }, _| {
+        Some(true_gain(output) * true_gain(MOST_CHANNELS + input))
+    });
     let held = PairTable::filled(MOST_CHANNELS, MOST_CHANNELS, true);
     let solution = solved_within(&Problem::gains(delta, held, BOUNDS), BUDGET);
     assert!(solution.matched);
     assert!(
         matches!(solution.proof.outcome, Outcome::Proven { .. }),
-        "one unknown: {:?}",
+        "a single unknown is proven at once: {:?}",
         solution.proof
     );
     for (pair, target) in solution.targets.iter() {
@@ -62,8 +64,9 @@ fn consistent_products_are_all_held() {
 }
 
 #[test]
-fn one_loop_among_all_channels_is_found() {
-    let mut held = path();
+fn a_loop_through_all_channels_is_found() {
+    let mut held = path_through_all_channels();
+    // This entry closes the path to a loop.
     held[Pair::new(0, MOST_CHANNELS - 1)] = true;
     let solution = solved_within(&Problem::gains(delta_gains(), held, BOUNDS), BUDGET);
     let [conflict] = solution.conflicts.as_slice() else {
@@ -77,11 +80,12 @@ fn one_loop_among_all_channels_is_found() {
 }
 
 #[test]
-fn what_is_held_along_a_path_balances_every_slope() {
-    let mut problem = Problem::gains(delta_gains(), path(), BOUNDS);
+fn sensitivities_of_held_entries_and_bounds_balance_the_gradient() {
+    let mut problem = Problem::gains(delta_gains(), path_through_all_channels(), BOUNDS);
     problem.alpha = 3.0;
     let solution = solved_within(&problem, BUDGET);
     assert!(solution.matched);
+    // Multipliers of the active constraints minus the gradient of the objective; inputs first.
     let mut balance = vec![0.0; 2 * MOST_CHANNELS];
     for sensitivity in sensitivities(&problem, &solution) {
         // Convert from per dB to per natural logarithm.
@@ -114,7 +118,7 @@ fn what_is_held_along_a_path_balances_every_slope() {
 }
 
 #[test]
-fn a_proof_of_what_is_free_ends_within_its_budget() {
+fn a_proof_without_constraints_ends_within_its_budget() {
     let problem = Problem::gains(
         delta_gains(),
         PairTable::filled(MOST_CHANNELS, MOST_CHANNELS, false),

@@ -1,4 +1,4 @@
-//! Local minima, limiting values of alpha, and extreme problems.
+//! Local minima, limits of the regularisation weight alpha, and extreme problems.
 
 use gdcm_method::correction::problem::ProblemError;
 use gdcm_method::correction::solve::solve;
@@ -75,44 +75,48 @@ fn two_local_minima_within_a_percent_are_both_kept() {
     );
     // On the straight path (in logarithms) from one to the other, the objective rises above both:
     // they are two distinct minima.
-    let along = |share: f64| {
-        let mix = |a: &[f64], b: &[f64]| -> Vec<f64> {
-            a.iter()
-                .zip(b)
-                .map(|(a, b)| (a.ln() * (1.0 - share) + b.ln() * share).exp())
-                .collect()
-        };
-        let [first, second] = [
-            &solution.proof.local_minima[0],
-            &solution.proof.local_minima[1],
-        ];
+    let [first, second] = solution.proof.local_minima.as_slice() else {
+        panic!("two minima")
+    };
+    let objective_between = |share: f64| {
         problem.objective_at(
-            &mix(&first.inputs, &second.inputs),
-            &mix(&first.outputs, &second.outputs),
+            &between(&first.inputs, &second.inputs, share),
+            &between(&first.outputs, &second.outputs, share),
         )
     };
-    assert!((1..20).any(|step| along(f64::from(step) / 20.0) > objectives[1]));
+    assert!((1..20).any(|step| objective_between(f64::from(step) / 20.0) > objectives[1]));
+}
+
+/// Returns the gains at a share of the straight path (in logarithms) from `a` to `b`.
+fn between(a: &[f64], b: &[f64], share: f64) -> Vec<f64> {
+    a.iter()
+        .zip(b)
+        .map(|(a, b)| (a.ln() * (1.0 - share) + b.ln() * share).exp())
+        .collect()
 }
 
 #[test]
-fn a_sampled_grid_finds_nothing_below_the_better_of_two_minima() {
+fn no_point_of_a_grid_is_below_the_lower_bound() {
     let problem = two_minima();
     let solution = solved(&problem);
     let delta = |output, input| problem.delta[Pair::new(output, input)].unwrap();
+    // 201 x 201 pairs of input gains from 0.1 to 10. The held entries determine two of the outputs,
+    // the other two are optimal for these inputs.
     let gain = |step: u32| 10f64.powf(f64::from(step) / 100.0 - 1.0);
     for (first, second) in (0..=200).flat_map(|i| (0..=200).map(move |j| (gain(i), gain(j)))) {
         let held = [delta(0, 0) / first, delta(1, 1) / second];
         if held.iter().any(|gain| !(0.1..=10.0).contains(gain)) {
             continue;
         }
-        // Returns the optimal gain of an unconstrained output.
-        let free = |output| {
+        let optimal_output = |output| {
             let g = [delta(output, 0), delta(output, 1)];
             let k = [first, second];
             ((g[0] * k[0] + g[1] * k[1]) / (k[0] * k[0] + k[1] * k[1])).clamp(0.1, 10.0)
         };
-        let objective =
-            problem.objective_at(&[first, second], &[held[0], held[1], free(2), free(3)]);
+        let objective = problem.objective_at(
+            &[first, second],
+            &[held[0], held[1], optimal_output(2), optimal_output(3)],
+        );
         assert!(
             objective >= solution.proof.lower_bound,
             "{first} {second}: {objective}"
@@ -121,17 +125,16 @@ fn a_sampled_grid_finds_nothing_below_the_better_of_two_minima() {
 }
 
 #[test]
-fn alpha_zero_is_the_limit_of_small_alphas() {
+fn gains_without_regularisation_are_the_limit_of_a_small_alpha() {
     for instance in gain_instances()
         .iter()
         .filter(|instance| instance.problem.alpha == 0.0)
     {
         let limit = solved(&instance.problem);
-        let small = Problem {
+        let small = solved(&Problem {
             alpha: 1e-6,
             ..instance.problem.clone()
-        };
-        let small = solved(&small);
+        });
         for (limit, small) in limit
             .inputs
             .iter()
@@ -149,7 +152,7 @@ fn alpha_zero_is_the_limit_of_small_alphas() {
 }
 
 #[test]
-fn alpha_zero_is_the_limit_of_small_alphas_for_delays() {
+fn delays_without_regularisation_are_the_limit_of_a_small_alpha() {
     for instance in delay_instances()
         .iter()
         .filter(|instance| instance.problem.alpha == 0.0)
@@ -176,7 +179,7 @@ fn alpha_zero_is_the_limit_of_small_alphas_for_delays() {
 }
 
 #[test]
-fn a_large_alpha_leaves_the_output_gains_at_one() {
+fn a_large_alpha_keeps_the_output_gains_at_one() {
     let mut problem = gain_instances()[0].problem.clone();
     problem.constrained = PairTable::filled(6, 4, false);
     problem.alpha = 1e6;
@@ -198,7 +201,7 @@ fn a_large_alpha_leaves_the_output_gains_at_one() {
 }
 
 #[test]
-fn channels_without_any_fitted_entry_keep_a_gain_of_one_and_no_delay() {
+fn channels_without_a_fitted_entry_have_unit_gain_and_no_delay() {
     let mut gains = gain_instances()[0].problem.clone();
     gains.constrained = PairTable::filled(6, 4, false);
     gains.fitted = gains
@@ -223,7 +226,7 @@ fn channels_without_any_fitted_entry_keep_a_gain_of_one_and_no_delay() {
 }
 
 #[test]
-fn equal_bounds_leave_one_answer() {
+fn equal_bounds_determine_every_gain() {
     let mut problem = gain_instances()[0].problem.clone();
     problem.bounds = Bounds {
         lower: 1.1,
@@ -241,7 +244,7 @@ fn equal_bounds_leave_one_answer() {
 }
 
 #[test]
-fn the_decibel_objective_is_proven_at_once_and_says_so() {
+fn the_decibel_objective_is_proven_in_a_single_node() {
     for instance in gain_instances() {
         let problem = Problem {
             quantity: Quantity::Gain(GainObjective::Decibel),
@@ -261,7 +264,7 @@ fn the_decibel_objective_is_proven_at_once_and_says_so() {
 }
 
 #[test]
-fn an_error_of_3_db_counts_alike_up_and_down_in_decibels() {
+fn the_decibel_objective_weights_errors_of_plus_and_minus_3_db_equally() {
     let bounds = Bounds {
         lower: 1.0,
         upper: 1.0,
@@ -283,7 +286,7 @@ fn an_error_of_3_db_counts_alike_up_and_down_in_decibels() {
 }
 
 #[test]
-fn one_absurd_off_axis_gain_neither_breaks_the_answer_nor_the_proof() {
+fn an_absurd_off_axis_gain_does_not_prevent_a_proven_solution() {
     let mut problem = gain_instances()[0].problem.clone();
     problem.delta[Pair::new(3, 0)] = Some(1e14);
     let solution = solved(&problem);
@@ -298,7 +301,7 @@ fn one_absurd_off_axis_gain_neither_breaks_the_answer_nor_the_proof() {
 }
 
 #[test]
-fn problems_that_are_not_well_posed_are_refused_with_the_reason() {
+fn ill_posed_gain_problems_are_refused_with_the_reason() {
     let good = gain_instances()[0].problem.clone();
     let refused =
         |problem: &Problem| solve(problem, ProofBudget::default(), &|| false).unwrap_err();
@@ -374,7 +377,7 @@ fn problems_that_are_not_well_posed_are_refused_with_the_reason() {
 }
 
 #[test]
-fn delay_problems_that_are_not_well_posed_are_refused_with_the_reason() {
+fn ill_posed_delay_problems_are_refused_with_the_reason() {
     let good = delay_instances()[0].problem.clone();
     let refused =
         |problem: &Problem| solve(problem, ProofBudget::default(), &|| false).unwrap_err();
@@ -439,7 +442,7 @@ fn delays_scale_with_the_unit_of_time() {
     for instance in delay_instances() {
         let seconds = solved(&instance.problem);
         let factor = 1e-6;
-        let micro = Problem {
+        let problem_in_micro = Problem {
             delta: instance
                 .problem
                 .delta
@@ -450,12 +453,12 @@ fn delays_scale_with_the_unit_of_time() {
             },
             ..instance.problem.clone()
         };
-        let micro = solved(&micro);
-        for (long, short) in seconds.outputs.iter().zip(&micro.outputs) {
+        let scaled = solved(&problem_in_micro);
+        for (delay, scaled) in seconds.outputs.iter().zip(&scaled.outputs) {
             // A few rounding errors of 0.1 s, magnified by a flat minimum.
             assert!(
-                (long * factor - short).abs() <= 1e-12 * factor,
-                "{}: {long} {short}",
+                (delay * factor - scaled).abs() <= 1e-12 * factor,
+                "{}: {delay} {scaled}",
                 instance.id
             );
         }

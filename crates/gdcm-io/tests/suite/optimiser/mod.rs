@@ -1,4 +1,5 @@
-//! The optimiser: comparison with independent reference values, and properties of every solution.
+//! The optimisation of gains (M8, eq. (7)), delays (M9, eq. (11)) and signed delays (M15.4):
+//! comparison with independent reference values, and properties of every solution.
 
 mod budgets;
 mod costs;
@@ -21,6 +22,7 @@ fn solved(problem: &Problem) -> Solution {
     solved_within(problem, ProofBudget::default())
 }
 
+/// Solves a problem within a budget for the proof of its optimality.
 fn solved_within(problem: &Problem, budget: ProofBudget) -> Solution {
     solve(problem, budget, &|| false).unwrap()
 }

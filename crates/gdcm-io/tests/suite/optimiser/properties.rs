@@ -1,4 +1,4 @@
-//! General properties of every solution, tested with random problems.
+//! Properties of every solution, tested with random problems.
 
 use proptest::prelude::*;
 
@@ -11,7 +11,7 @@ use gdcm_model::dataset::{Pair, PairTable};
 use super::kkt::{delay_residual, gain_residual};
 use super::random::{Pattern, delay_problems, gain_problems};
 use super::{solved, solved_within};
-use crate::made_up::tries;
+use crate::synthetic::tries;
 
 /// Limits the time of a case; solutions without a complete proof must be marked as not proven.
 const BUDGET: ProofBudget = ProofBudget {
@@ -20,7 +20,8 @@ const BUDGET: ProofBudget = ProofBudget {
     bytes: 8_000_000,
 };
 
-fn held_and_inside(problem: &Problem, solution: &Solution) -> Result<(), TestCaseError> {
+/// Checks that held entries have their targets, and that all gains are inside the bounds.
+fn assert_feasible(problem: &Problem, solution: &Solution) -> Result<(), TestCaseError> {
     for pair in problem.constrained.marked() {
         let product = solution.inputs[pair.input] * solution.outputs[pair.output];
         let target = solution.targets[pair].unwrap();
@@ -44,13 +45,21 @@ fn held_and_inside(problem: &Problem, solution: &Solution) -> Result<(), TestCas
     Ok(())
 }
 
+fn is_proven(solution: &Solution) -> bool {
+    matches!(solution.proof.outcome, Outcome::Proven { .. })
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig { cases: tries(64, 300), failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig {
+        cases: tries(64, 300),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    })]
 
     #[test]
-    fn gains_hold_what_is_held_and_stay_inside_the_bounds(problem in gain_problems((6, 4), 1.5, Pattern::Any)) {
+    fn gains_satisfy_held_entries_and_bounds(problem in gain_problems((6, 4), 1.5, Pattern::Any)) {
         let solution = solved_within(&problem, BUDGET);
-        held_and_inside(&problem, &solution)?;
+        assert_feasible(&problem, &solution)?;
         prop_assert!(solution.proof.lower_bound <= solution.objective);
     }
 
@@ -70,15 +79,17 @@ proptest! {
     }
 
     #[test]
-    fn realistic_gains_are_proven_or_as_near_as_rounding_lets_them(problem in gain_problems((6, 4), 0.6, Pattern::Forest)) {
+    fn realistic_gains_are_proven_up_to_rounding(
+        problem in gain_problems((6, 4), 0.6, Pattern::Forest),
+    ) {
         let solution = solved(&problem);
-        let is_told = match solution.proof.outcome {
+        let is_proven_up_to_rounding = match solution.proof.outcome {
             Outcome::Proven { gap } => gap <= 1e-9,
             // In one of some tens of thousands of cases the fit is almost exact: rounding is a
             // larger share of an objective near zero.
             Outcome::NotProven { gap, limit } => limit == Limit::Rounding && gap <= 1e-3,
         };
-        prop_assert!(is_told, "{:?}", solution.proof.outcome);
+        prop_assert!(is_proven_up_to_rounding, "{:?}", solution.proof.outcome);
     }
 
     #[test]
@@ -92,31 +103,36 @@ proptest! {
         for sample in samples {
             let gain = |index: usize| (low + (high - low) * sample[index]).exp();
             let inputs: Vec<f64> = (0..problem.delta.inputs()).map(gain).collect();
-            let mut outputs: Vec<f64> = (0..problem.delta.outputs()).map(|output| gain(3 + output)).collect();
+            let mut outputs: Vec<f64> = Vec::new();
+            for output in 0..problem.delta.outputs() {
+                outputs.push(gain(3 + output));
+            }
             // At most one entry is held for each output, so a held output follows from its input.
             for pair in problem.constrained.marked() {
                 outputs[pair.output] = solution.targets[pair].unwrap() / inputs[pair.input];
             }
-            if outputs.iter().all(|gain| (problem.bounds.lower..=problem.bounds.upper).contains(gain)) {
-                // Rounding of the sample.
+            let inside = problem.bounds.lower..=problem.bounds.upper;
+            if outputs.iter().all(|gain| inside.contains(gain)) {
+                // The factor covers the rounding of the sample's objective.
                 let objective = problem.objective_at(&inputs, &outputs) * (1.0 + 1e-14);
-                prop_assert!(solution.proof.lower_bound <= objective, "{} is below {}", objective, solution.proof.lower_bound);
+                let bound = solution.proof.lower_bound;
+                prop_assert!(bound <= objective, "{} is below {}", objective, bound);
             }
         }
     }
 
     #[test]
-    fn permuted_channels_permute_the_answer(
+    fn permuting_the_channels_permutes_the_gains(
         problem in gain_problems((5, 4), 0.8, Pattern::Any),
         seed in any::<u64>(),
     ) {
         let outputs = shuffled(problem.delta.outputs(), seed);
         let inputs = shuffled(problem.delta.inputs(), seed / 7);
-        let moved = |pair: Pair| Pair::new(outputs[pair.output], inputs[pair.input]);
+        let original = |pair: Pair| Pair::new(outputs[pair.output], inputs[pair.input]);
         let permuted = Problem {
-            delta: problem.delta.map(|pair, _| problem.delta[moved(pair)]),
-            constrained: problem.constrained.map(|pair, _| problem.constrained[moved(pair)]),
-            fitted: problem.fitted.map(|pair, _| problem.fitted[moved(pair)]),
+            delta: problem.delta.map(|pair, _| problem.delta[original(pair)]),
+            constrained: problem.constrained.map(|pair, _| problem.constrained[original(pair)]),
+            fitted: problem.fitted.map(|pair, _| problem.fitted[original(pair)]),
             ..problem.clone()
         };
         let first = solved_within(&problem, BUDGET);
@@ -124,13 +140,18 @@ proptest! {
         prop_assert_eq!(first.matched, second.matched);
         // An unproven solution may be another local minimum. If there is a second minimum within 1
         // %, even proven gains may differ.
-        let proven = [&first, &second].iter().all(|solution| matches!(solution.proof.outcome, Outcome::Proven { .. }));
-        if proven {
+        let is_proven = is_proven(&first) && is_proven(&second);
+        if is_proven {
             let scale = first.objective.max(1e-6);
-            prop_assert!((first.objective - second.objective).abs() <= 2e-9 * scale, "{} {}", first.objective, second.objective);
+            let difference = (first.objective - second.objective).abs();
+            prop_assert!(difference <= 2e-9 * scale, "{}", difference);
         }
-        if proven && first.proof.all_minima && first.proof.local_minima.len() == 1 && problem.alpha > 1e-3 && first.objective > 1e-6 {
-            for pair in problem.fitted.marked().filter(|&pair| problem.delta[moved(pair)].is_some()) {
+        let is_unique = first.proof.all_minima && first.proof.local_minima.len() == 1;
+        if is_proven && is_unique && problem.alpha > 1e-3 && first.objective > 1e-6 {
+            for pair in problem.fitted.marked() {
+                if problem.delta[original(pair)].is_none() {
+                    continue;
+                }
                 let there = second.inputs[pair.input] * second.outputs[pair.output];
                 let here = first.inputs[inputs[pair.input]] * first.outputs[outputs[pair.output]];
                 // Both solutions are stationary within 1e-9, which a flat minimum magnifies.
@@ -140,7 +161,7 @@ proptest! {
     }
 
     #[test]
-    fn freeing_a_held_entry_or_widening_a_bound_never_raises_the_objective(
+    fn freeing_a_held_entry_or_widening_the_bounds_never_raises_the_objective(
         problem in gain_problems((5, 4), 0.6, Pattern::Forest),
         which in any::<prop::sample::Index>(),
     ) {
@@ -156,41 +177,49 @@ proptest! {
         wider.bounds.lower *= 0.9;
         let wider = solved_within(&wider, BUDGET);
         prop_assert!(wider.proof.lower_bound <= base.objective + slack);
-        if matches!(wider.proof.outcome, Outcome::Proven { .. }) {
-            prop_assert!(wider.objective <= base.objective + slack, "{} {}", wider.objective, base.objective);
+        if is_proven(&wider) {
+            let rise = wider.objective - base.objective;
+            prop_assert!(wider.objective <= base.objective + slack, "rises by {}", rise);
         }
         let held: Vec<Pair> = problem.constrained.marked().collect();
         if !held.is_empty() {
             let mut freer = problem.clone();
             freer.constrained[held[which.index(held.len())]] = false;
             let freer = solved_within(&freer, BUDGET);
-            if matches!(freer.proof.outcome, Outcome::Proven { .. }) {
-                prop_assert!(freer.objective <= base.objective + slack, "{} {}", freer.objective, base.objective);
+            if is_proven(&freer) {
+                let rise = freer.objective - base.objective;
+                prop_assert!(freer.objective <= base.objective + slack, "rises by {}", rise);
             }
         }
     }
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: tries(12, 24), failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig {
+        cases: tries(12, 24),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    })]
 
     #[test]
-    fn gains_of_any_size_that_is_allowed_are_answered(
+    fn gains_of_any_permitted_size_have_a_finite_solution(
         problem in gain_problems((4, 3), 115.0, Pattern::Any),
         decades in 0.1..9.0_f64,
     ) {
         let bounds = Bounds { lower: 10f64.powf(-decades), upper: 10f64.powf(decades) };
         let problem = Problem { bounds, ..problem };
         let solution = solved_within(&problem, ProofBudget { work: 50_000, ..BUDGET });
-        held_and_inside(&problem, &solution)?;
+        assert_feasible(&problem, &solution)?;
         prop_assert!(solution.objective.is_finite() && solution.proof.lower_bound.is_finite());
         prop_assert!(solution.proof.lower_bound <= solution.objective);
     }
 
     #[test]
-    fn twelve_by_eight_channels_are_solved_with_or_without_a_proof(problem in gain_problems((12, 8), 1.0, Pattern::Any)) {
+    fn twelve_by_eight_channels_are_solved_with_or_without_a_proof(
+        problem in gain_problems((12, 8), 1.0, Pattern::Any),
+    ) {
         let solution = solved_within(&problem, ProofBudget { work: 1_000_000, ..BUDGET });
-        held_and_inside(&problem, &solution)?;
+        assert_feasible(&problem, &solution)?;
         let residual = gain_residual(&problem, &solution);
         prop_assert!(residual <= 1e-9, "{}", residual);
         match solution.proof.outcome {
@@ -214,7 +243,7 @@ fn shuffled(count: usize, seed: u64) -> Vec<usize> {
 }
 
 #[test]
-fn an_exact_product_of_gains_is_found_with_an_objective_of_zero() {
+fn delta_gains_that_are_exact_products_have_an_objective_of_zero() {
     let inputs = [0.9, 1.2, 1.1];
     let outputs = [1.05, 0.8, 1.3, 1.0];
     let delta = PairTable::from_fn(4, 3, |pair| Some(inputs[pair.input] * outputs[pair.output]));
@@ -235,7 +264,7 @@ fn an_exact_product_of_gains_is_found_with_an_objective_of_zero() {
 }
 
 #[test]
-fn a_strong_regularisation_that_meets_its_bound_is_proven() {
+fn a_strong_regularisation_next_to_a_bound_is_proven() {
     // Found by the random problems: the optimum is 1e-8 below the upper bound of 1.
     let gains = [Some(0.9897481972920906), None, Some(0.989970222018355)];
     let problem = Problem {

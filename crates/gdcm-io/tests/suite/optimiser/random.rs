@@ -15,6 +15,7 @@ pub enum Pattern {
     Any,
 }
 
+/// Generates the entries of a table, row by row.
 fn entries<T: std::fmt::Debug>(
     (outputs, inputs): (usize, usize),
     entry: impl Strategy<Value = T>,
@@ -22,18 +23,19 @@ fn entries<T: std::fmt::Debug>(
     prop::collection::vec(entry, outputs * inputs)
 }
 
+/// Converts entries, row by row, to a table.
 fn fill<T: Clone>((outputs, inputs): (usize, usize), values: &[T]) -> PairTable<T> {
     PairTable::from_fn(outputs, inputs, |pair: Pair| {
         values[pair.output * inputs + pair.input].clone()
     })
 }
 
-/// Marks the first of the marked entries of each output.
-fn one_each(shape: (usize, usize), marks: &[bool]) -> PairTable<bool> {
-    let all = fill(shape, marks);
-    let first =
-        |pair: Pair| all[pair] && (0..pair.input).all(|input| !all[Pair::new(pair.output, input)]);
-    PairTable::from_fn(shape.0, shape.1, first)
+/// Marks only the first of the marked entries of each output.
+fn first_of_each_output(shape: (usize, usize), marks: &[bool]) -> PairTable<bool> {
+    let marks = fill(shape, marks);
+    marks.map(|pair, mark| {
+        *mark && (0..pair.input).all(|input| !marks[Pair::new(pair.output, input)])
+    })
 }
 
 pub fn shapes(most: (usize, usize)) -> impl Strategy<Value = (usize, usize)> {
@@ -69,7 +71,7 @@ fn tables(
         (deltas, constrained, fitted).prop_map(move |(deltas, constrained, fitted)| {
             let delta = fill(shape, &deltas);
             let marks = match pattern {
-                Pattern::Forest => one_each(shape, &constrained),
+                Pattern::Forest => first_of_each_output(shape, &constrained),
                 Pattern::Any => fill(shape, &constrained),
             };
             let constrained = marks.map(|pair, mark| *mark && delta[pair].is_some());

@@ -1,4 +1,5 @@
-//! Comparison of computed values and lower bounds with exact values (50 digits).
+//! Rounding of the branch and bound: computed objectives are within their error bounds, and lower
+//! bounds are below exact values, which are computed with 51 digits.
 
 use dashu_float::FBig;
 use dashu_float::round::mode::HalfEven;
@@ -50,13 +51,13 @@ fn exact_node(node: &Placement, scales: &[f64]) -> Exact {
 /// A problem with up to three outputs and three inputs, and at most one constrained entry for each
 /// output.
 #[derive(Clone, Debug)]
-struct Sample {
+struct RandomProblem {
     problem: Problem,
     components: Components,
     objective: Objective,
 }
 
-impl Sample {
+impl RandomProblem {
     fn new(problem: Problem) -> Self {
         let components = Components::new(&Constraints::new(&problem));
         let objective = scaled_objective(&problem, &components);
@@ -114,7 +115,7 @@ impl Sample {
     }
 
     /// Returns the point in the box at the given shares of its width.
-    fn at(&self, shares: &[f64]) -> Vec<f64> {
+    fn point_at(&self, shares: &[f64]) -> Vec<f64> {
         let ends = self
             .objective
             .lower
@@ -127,7 +128,7 @@ impl Sample {
 
     /// Returns a point in the box at most half a `width` from `centre` in each scale; the `shares`
     /// of the width place it.
-    fn near(&self, centre: &[f64], shares: &[f64], width: f64) -> Vec<f64> {
+    fn point_near(&self, centre: &[f64], shares: &[f64], width: f64) -> Vec<f64> {
         let ScaleBox { lower, upper } = self.objective.bounds();
         let mut point = Vec::new();
         for (index, scale) in centre.iter().enumerate() {
@@ -155,9 +156,11 @@ impl Sample {
     }
 }
 
-/// Creates random samples: `held` gives the input of each output's constrained entry, if any.
-fn samples() -> impl Strategy<Value = Sample> {
+/// Creates random problems.
+fn random_problems() -> impl Strategy<Value = RandomProblem> {
+    // Natural logarithms of the delta gains.
     let gains = prop::collection::vec(-2.0..2.0_f64, 9);
+    // Input of each output's constrained entry, if any.
     let held = prop::collection::vec(prop::option::weighted(0.5, 0..3_usize), 3);
     let alpha = prop_oneof![Just(0.0), Just(1e-12), Just(1.0), Just(1e6)];
     let objective = prop_oneof![3 => Just(GainObjective::Ratio), 1 => Just(GainObjective::Decibel)];
@@ -179,7 +182,7 @@ fn samples() -> impl Strategy<Value = Sample> {
                     held[pair.output] == Some(pair.input)
                 });
                 let problem = Problem::gains(delta, constrained, Bounds { lower, upper });
-                Sample::new(Problem {
+                RandomProblem::new(Problem {
                     quantity: Quantity::Gain(objective),
                     alpha,
                     ..problem
@@ -188,6 +191,7 @@ fn samples() -> impl Strategy<Value = Sample> {
         )
 }
 
+/// Creates shares that place a point in a box, more than a problem has scales.
 fn shares() -> impl Strategy<Value = Vec<f64>> {
     prop::collection::vec(0.0..1.0_f64, 7)
 }
@@ -200,35 +204,38 @@ proptest! {
     })]
 
     #[test]
-    fn the_objective_is_known_to_its_rounding(sample in samples(), shares in shares()) {
-        let scales = sample.at(&shares);
+    fn the_rounding_error_of_the_objective_is_within_its_bound(
+        random in random_problems(),
+        shares in shares(),
+    ) {
+        let scales = random.point_at(&shares);
         let mut expansion = Expansion::zero(scales.len());
-        sample.objective.expand(&scales, Curvature::True, &mut expansion);
+        random.objective.expand(&scales, Curvature::True, &mut expansion);
         let Rounded { value, error } = expansion.value;
-        let off = excess(&sample.exact_objective(&scales), value).abs();
-        prop_assert!(off <= error, "off by {:e}, not {:e}", off, error);
+        let off = excess(&random.exact_objective(&scales), value).abs();
+        prop_assert!(off <= error, "error {:e} above its bound {:e}", off, error);
         // The error bound is also sharp: at most a few hundred roundings relative to the squares,
         // which exceed their sum if terms cancel.
-        let entries = sample.problem.fit_entries();
+        let entries = random.problem.fit_entries();
         let squares: f64 = entries.map(|entry| entry.delta.powi(2) + 1.0).sum();
         let size = 1e4 * (value + squares);
-        prop_assert!(error <= 1e3 * f64::EPSILON * size * (1.0 + sample.problem.alpha));
+        prop_assert!(error <= 1e3 * f64::EPSILON * size * (1.0 + random.problem.alpha));
     }
 
     #[test]
-    fn no_exact_value_in_a_node_is_below_its_bound(
-        sample in samples(),
+    fn no_exact_objective_in_a_node_is_below_its_bound(
+        random in random_problems(),
         inside in shares(),
         others in prop::collection::vec(shares(), 4),
         // Exponent of the node size, down to sizes at which rounding errors dominate.
         decades in 0.0..16.0_f64,
     ) {
-        let inside = sample.at(&inside);
-        let region = sample.region(&inside, 10f64.powf(-decades));
-        let mut lower = sample.objective.lower.clone();
-        let mut upper = sample.objective.upper.clone();
+        let inside = random.point_at(&inside);
+        let region = random.region(&inside, 10f64.powf(-decades));
+        let mut lower = random.objective.lower.clone();
+        let mut upper = random.objective.upper.clone();
         region.write_box(&mut lower, &mut upper);
-        let underestimator = Underestimator::new(&sample.objective, &region, 10.0);
+        let underestimator = Underestimator::new(&random.objective, &region, 10.0);
         let effort = Effort::new(&|| false);
         let mut bound = f64::NEG_INFINITY;
         let mut scales = Vec::new();
@@ -241,57 +248,63 @@ proptest! {
             bound = bound.max(tangent_bound(scales, at, node));
             false
         });
-        let nearby = |shares: &Vec<f64>| -> Vec<f64> {
-            let at = |index: usize| lower[index] + (upper[index] - lower[index]) * shares[index];
-            (0..inside.len()).map(at).collect()
-        };
-        let points = others.iter().map(nearby).filter(|point| region.contains(point));
-        for point in points.chain([inside.clone()]) {
-            let above = excess(&sample.exact_objective(&point), bound);
-            prop_assert!(above >= 0.0, "{:e} below {:e}", above, bound);
+        // Points of the node's box that are in the node.
+        let mut points = vec![inside.clone()];
+        for shares in &others {
+            let mut point = Vec::new();
+            for index in 0..inside.len() {
+                point.push(lower[index] + (upper[index] - lower[index]) * shares[index]);
+            }
+            if region.contains(&point) {
+                points.push(point);
+            }
+        }
+        for point in points {
+            let above = excess(&random.exact_objective(&point), bound);
+            prop_assert!(above >= 0.0, "{:e} from the bound {:e}", above, bound);
         }
     }
 
     #[test]
-    fn no_exact_value_is_below_the_bound_of_the_search(
-        sample in samples(),
+    fn no_exact_objective_is_below_the_bound_of_the_search(
+        random in random_problems(),
         others in prop::collection::vec(shares(), 4),
     ) {
         let effort = Effort::new(&|| false);
         let budget = ProofBudget { work: 300_000, listing: 0, bytes: 1_000_000 };
-        let start = sample.objective.nearest_to_zero();
-        let floor = rounding_floor(&sample.problem);
-        let found = search(&sample.objective, &start, budget, floor, &effort).unwrap();
+        let start = random.objective.nearest_to_zero();
+        let floor = rounding_floor(&random.problem);
+        let found = search(&random.objective, &start, budget, floor, &effort).unwrap();
         let minimum = &found.minima[0].scales;
         // Points next to the minimum, where the bound is sharp, and points all over the box.
         let mut points = vec![minimum.clone()];
         for (step, shares) in others.iter().enumerate() {
-            points.push(sample.near(minimum, shares, 10f64.powi(-4 * step as i32 - 2)));
-            points.push(sample.at(shares));
+            points.push(random.point_near(minimum, shares, 10f64.powi(-4 * step as i32 - 2)));
+            points.push(random.point_at(shares));
         }
         for point in points {
-            let above = excess(&sample.exact_objective(&point), found.lower_bound);
-            prop_assert!(above >= 0.0, "{:e} below {:e}", above, found.lower_bound);
+            let above = excess(&random.exact_objective(&point), found.lower_bound);
+            prop_assert!(above >= 0.0, "{:e} from the bound {:e}", above, found.lower_bound);
         }
     }
 
     #[test]
-    fn the_bound_from_the_curvature_at_a_minimum_holds_next_to_it(
-        sample in samples(),
+    fn no_exact_objective_near_a_minimum_is_below_the_bound_from_its_curvature(
+        random in random_problems(),
         others in prop::collection::vec(shares(), 6),
     ) {
         let effort = Effort::new(&|| false);
-        let mut minimum = sample.objective.nearest_to_zero();
-        let bounds = sample.objective.bounds();
+        let mut minimum = random.objective.nearest_to_zero();
+        let bounds = random.objective.bounds();
         let mut newton = Newton::new(minimum.len(), &effort);
-        newton.minimise(&sample.objective, bounds, &mut minimum, |_, _| false);
+        newton.minimise(&random.objective, bounds, &mut minimum, |_, _| false);
         let mut at = Expansion::zero(minimum.len());
-        sample.objective.expand(&minimum, Curvature::True, &mut at);
-        if let Some(bound) = NodeExclusion::new(&sample.objective).bound_at(&minimum, &at) {
+        random.objective.expand(&minimum, Curvature::True, &mut at);
+        if let Some(bound) = NodeExclusion::new(&random.objective).bound_at(&minimum, &at) {
             for (step, shares) in others.iter().enumerate() {
-                let nearby = sample.near(&minimum, shares, 10f64.powi(-3 * step as i32 - 2));
-                let above = excess(&sample.exact_objective(&nearby), bound);
-                prop_assert!(above >= 0.0, "{:e} below {:e}", above, bound);
+                let nearby = random.point_near(&minimum, shares, 10f64.powi(-3 * step as i32 - 2));
+                let above = excess(&random.exact_objective(&nearby), bound);
+                prop_assert!(above >= 0.0, "{:e} from the bound {:e}", above, bound);
             }
         }
     }

@@ -13,7 +13,12 @@ use crate::couplings::{CoupledModelError, CouplingMatrices, LoopMargin};
 
 /// A helicopter with four states, two inputs, three outputs and feed-through.
 fn small_aircraft() -> StateSpace {
-    let a = dmatrix![-0.9, 0.3, 0.0, 0.1; -0.4, -1.6, 0.2, 0.0; 0.1, 0.0, -0.2, 1.0; 0.3, -0.1, -1.5, -0.4];
+    let a = dmatrix![
+        -0.9, 0.3, 0.0, 0.1;
+        -0.4, -1.6, 0.2, 0.0;
+        0.1, 0.0, -0.2, 1.0;
+        0.3, -0.1, -1.5, -0.4
+    ];
     let b = dmatrix![1.0, 0.1; -0.2, 0.8; 0.0, 0.3; 0.6, -0.2];
     let c = dmatrix![1.0, 0.0, 0.2, 0.0; 0.0, 1.0, 0.0, -0.3; 0.1, 0.4, 1.0, 0.2];
     StateSpace::new(a, b, c, dmatrix![0.0, 0.1; 0.05, 0.0; -0.2, 0.4]).unwrap()
@@ -73,7 +78,7 @@ fn without_couplings_nothing_changes() {
 }
 
 #[test]
-fn the_matrices_have_the_response_of_the_loop() {
+fn the_coupled_matrices_have_the_coupled_response() {
     let continuous = small_aircraft();
     // A sampled model with the same matrices, stable because scaling by 0.5 puts the poles inside
     // the unit circle.
@@ -138,21 +143,25 @@ fn channel_delays_are_inside_the_loop() {
 
 #[test]
 fn a_singular_loop_through_the_feed_through_is_refused() {
+    // The feed-through from input 2 to output 3 is 0.4 = 1 / 2.5.
     let feedback = dmatrix![0.0, 0.0, 0.0; 0.0, 0.0, 2.5 - 1e-9];
     let error = constant(&DMatrix::identity(2, 2), &feedback)
         .model(&small_aircraft(), 60.0, pade())
         .unwrap_err();
     assert!(
-        matches!(error, CoupledModelError::AlgebraicLoop { condition_number } if condition_number > 1e6),
+        matches!(
+            error,
+            CoupledModelError::AlgebraicLoop { condition_number } if condition_number > 1e6
+        ),
         "{error}"
     );
-    let other = constant(&DMatrix::identity(2, 2), &DMatrix::zeros(2, 2)).model(
+    let two_outputs = constant(&DMatrix::identity(2, 2), &DMatrix::zeros(2, 2)).model(
         &small_aircraft(),
         60.0,
         pade(),
     );
     assert!(matches!(
-        other,
+        two_outputs,
         Err(CoupledModelError::Channels {
             found: [3, 2],
             expected: [2, 2]
@@ -162,6 +171,7 @@ fn a_singular_loop_through_the_feed_through_is_refused() {
 
 #[test]
 fn a_pole_that_the_loop_makes_unstable_is_marked() {
+    // A pole at -1 rad/s with a feedback of 1.5 moves to 0.5 rad/s.
     let lag = StateSpace::new(dmatrix![-1.0], dmatrix![1.0], dmatrix![1.0], dmatrix![0.0]).unwrap();
     let shifts = constant(&dmatrix![1.0], &dmatrix![1.5])
         .pole_shifts(&lag, 60.0, pade())
@@ -182,6 +192,6 @@ fn a_pole_that_the_loop_makes_unstable_is_marked() {
     let change = relative_change_db(&response, &couplings.response(&response, 60.0), 39);
     assert!(
         change[Pair::new(0, 0)].unwrap() < -17.0,
-        "the loop does little at 8 rad/s: {change:?}"
+        "the relative change at 8 rad/s is not below -17 dB: {change:?}"
     );
 }

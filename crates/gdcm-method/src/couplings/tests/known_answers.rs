@@ -38,7 +38,7 @@ fn index(value: &Value) -> usize {
 }
 
 #[test]
-fn the_synthetic_aircraft_is_recovered() {
+fn the_couplings_of_the_synthetic_aircraft_are_recovered() {
     let toy = &REFERENCE["toy"];
     let tolerance = toy["recovered"]["tolerance"].as_f64().unwrap();
     let passes = toy["recovered"]["solves"].as_u64().unwrap() as usize;
@@ -65,7 +65,7 @@ fn the_synthetic_aircraft_is_recovered() {
 }
 
 #[test]
-fn every_pass_of_the_disturbed_aircraft_agrees() {
+fn every_pass_for_the_disturbed_aircraft_equals_the_reference() {
     let known = &REFERENCE["toy"]["disturbed"];
     let found = fit(&disturbed());
     assert_eq!(found.unknowns, unknowns(&REFERENCE["toy"]["names"]));
@@ -76,14 +76,14 @@ fn every_pass_of_the_disturbed_aircraft_agrees() {
             let error = (coefficients[unknown] - expected).abs();
             assert!(
                 error < known["tolerance"].as_f64().unwrap(),
-                "pass {pass}, {unknown}: {error:e}"
+                "pass {pass}, unknown {unknown}: {error:e}"
             );
         }
     }
 }
 
 #[test]
-fn a_state_space_with_feed_through_is_coupled_exactly() {
+fn a_coupled_state_space_with_feed_through_equals_the_reference() {
     let known = &REFERENCE["state_space"];
     let [a, b, c, d, m, k] = ["A", "B", "C", "D", "M", "K"].map(|name| matrix(&known[name]));
     let physics = StateSpace::new(a, b, c, d).unwrap();
@@ -214,12 +214,13 @@ fn the_gradient_of_the_weighted_problem_vanishes() {
 }
 
 #[test]
-fn bars_need_three_conditions_and_agree_with_the_jackknife() {
+fn error_bars_need_three_conditions_and_equal_the_jackknife() {
     let fits = left_out_fits(&disturbed(), &Sequential, &Unobserved).unwrap();
     let left_out: Vec<_> = fits.iter().map(|fit| fit.condition).collect();
     assert_eq!(left_out, [1, 2, 3, 4].map(ConditionId));
     assert_eq!(fits[1].fit, fit(&disturbed().without(1)));
     let bars = CouplingBars::from_fits(&fits, 80.0, 0.9).unwrap();
+    // Jackknife variance of n = 4 fits: (n - 1) / n times the sum of the squared deviations.
     let entries: Vec<f64> = fits
         .iter()
         .map(|left_out| left_out.fit.matrices.feedback()[(1, 2)])

@@ -45,7 +45,8 @@ fn a_fit_without_any_response_and_tables_of_another_shape_are_refused() {
     ));
 }
 
-const UNKNOWN: Complex<f64> = Complex::new(f64::NAN, f64::NAN);
+/// A missing value of a response.
+const MISSING: Complex<f64> = Complex::new(f64::NAN, f64::NAN);
 
 /// A response without the values at these pairs and frequencies.
 fn without(response: &FrequencyResponse, lacks: impl Fn(Pair, usize) -> bool) -> FrequencyResponse {
@@ -53,7 +54,7 @@ fn without(response: &FrequencyResponse, lacks: impl Fn(Pair, usize) -> bool) ->
         let mut curve = curve.clone();
         for (k, value) in curve.iter_mut().enumerate() {
             if lacks(pair, k) {
-                *value = UNKNOWN;
+                *value = MISSING;
             }
         }
         curve
@@ -174,16 +175,17 @@ fn an_input_without_flight_data_stays_uncoupled() {
 }
 
 #[test]
-fn a_response_without_coherence_does_not_count() {
+fn a_response_with_low_coherence_has_no_weight() {
+    // The coherence of 0.3 is below the threshold of 0.6.
     let mut measured = disturbed();
     let mut unusable = disturbed();
     let omega = Arc::clone(&measured.omega);
-    for (condition, other) in measured.conditions.iter_mut().zip(&mut unusable.conditions) {
+    for (condition, without) in measured.conditions.iter_mut().zip(&mut unusable.conditions) {
         condition.coherence = Some(PairTable::from_fn(3, 2, |pair| {
             let coherence = if pair == Pair::new(2, 0) { 0.3 } else { 1.0 };
             CoherenceWeights::select(&omega, &vec![coherence; omega.len()], 0.6, None)
         }));
-        other.usable[Pair::new(2, 0)] = false;
+        without.usable[Pair::new(2, 0)] = false;
     }
     let found = fit(&measured);
     let expected = fit(&unusable);
@@ -199,11 +201,12 @@ fn a_response_without_coherence_does_not_count() {
 }
 
 #[test]
-fn a_missing_physics_response_is_missing_only_where_coupling_needs_it() {
+fn a_missing_physics_response_affects_only_coupled_responses_that_need_it() {
     let problem = disturbed();
     let physics = &problem.conditions[0].physics;
     let lacking = without(physics, |pair, k| pair == Pair::new(2, 0) && k == 3);
     let mixing = dmatrix![1.0, 0.1; 0.2, 1.0];
+    // The output that lacks a value is not fed back.
     let free = constant(&mixing, &dmatrix![0.1, 0.2, 0.0; 0.0, 0.1, 0.0]);
     let found = free.response(&lacking, 60.0);
     let expected = free.response(physics, 60.0);
@@ -221,6 +224,7 @@ fn a_missing_physics_response_is_missing_only_where_coupling_needs_it() {
             );
         }
     }
+    // Fed back, it is needed for every response at its frequency.
     let fed_back =
         constant(&mixing, &dmatrix![0.0, 0.0, 0.1; 0.0, 0.0, 0.0]).response(&lacking, 60.0);
     assert!(

@@ -24,15 +24,14 @@ impl Progress for Impatient {
 
 #[test]
 fn a_cancelled_fit_ends() {
-    let stopped = Err(CouplingError::Cancelled(Cancelled));
     assert_eq!(
         fit_couplings(&disturbed(), &Sequential, &Impatient),
-        stopped
+        Err(CouplingError::Cancelled(Cancelled))
     );
     assert!(left_out_fits(&disturbed(), &Sequential, &Impatient).is_err());
 }
 
-/// Records progress reports, and cancels after a given number of polls.
+/// Keeps the reports of progress, in thousandths, and cancels after a number of polls.
 struct Listener {
     polls_left: AtomicUsize,
     reports: Mutex<Vec<usize>>,
@@ -90,7 +89,7 @@ fn a_fit_can_be_cancelled_within_a_condition() {
     assert_eq!(stopped, Err(CouplingError::Cancelled(Cancelled)));
     assert!(
         listener.reports.into_inner().unwrap().is_empty(),
-        "before the first condition of the first pass was done"
+        "cancelled only after the first condition of the first pass"
     );
 }
 

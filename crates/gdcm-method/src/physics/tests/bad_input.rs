@@ -1,4 +1,5 @@
-//! Data that determine little or nothing: errors with codes, no panic.
+//! Data that determine few parameters or none, and unusable settings: limited values or errors with
+//! codes.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -17,7 +18,8 @@ use crate::physics::{ParameterValue, PhysicsError, PhysicsProblem, diagnose, fit
 /// The parameter values with which the reference flight responses `R` were computed.
 const TRUE_Z: [f64; 2] = [0.8, -0.6];
 
-fn code(problem: &PhysicsProblem) -> &'static str {
+/// Returns the code of the error of a diagnosis.
+fn error_code(problem: &PhysicsProblem) -> &'static str {
     diagnose(problem, &Sequential, &Unobserved)
         .unwrap_err()
         .code()
@@ -42,28 +44,28 @@ fn a_single_condition_has_values_and_no_intervals() {
 fn nothing_to_fit_is_an_error() {
     let mut problem = toy("R");
     problem.conditions.clear();
-    assert_eq!(code(&problem), "physics-without-responses");
+    assert_eq!(error_code(&problem), "physics-without-responses");
     let mut problem = toy("R");
     for condition in &mut problem.conditions {
         condition.usable = PairTable::filled(2, 2, false);
     }
-    assert_eq!(code(&problem), "physics-without-responses");
+    assert_eq!(error_code(&problem), "physics-without-responses");
     let mut problem = toy("R");
     problem.parameters.clear();
-    assert_eq!(code(&problem), "physics-without-parameters");
+    assert_eq!(error_code(&problem), "physics-without-parameters");
 }
 
 #[test]
 fn tables_of_other_shapes_are_an_error() {
     let mut problem = toy("R");
     problem.conditions[1].usable = PairTable::filled(3, 2, true);
-    assert_eq!(code(&problem), "physics-table-shape");
+    assert_eq!(error_code(&problem), "physics-table-shape");
     let mut problem = toy("R");
     problem.omega = Arc::from([1.0, 2.0]);
-    assert_eq!(code(&problem), "physics-table-shape");
+    assert_eq!(error_code(&problem), "physics-table-shape");
     let mut problem = toy("R");
     problem.parameters.push(ParameterValue::Fitted);
-    assert_eq!(code(&problem), "physics-parameter-count");
+    assert_eq!(error_code(&problem), "physics-parameter-count");
 }
 
 #[test]
@@ -71,15 +73,15 @@ fn settings_out_of_range_are_an_error() {
     for value in [f64::NAN, -1.0, f64::INFINITY] {
         let mut problem = toy("R");
         problem.options.delay_sd_s = value;
-        assert_eq!(code(&problem), "physics-option");
+        assert_eq!(error_code(&problem), "physics-option");
     }
     let mut problem = toy("R");
     problem.parameters[1] = ParameterValue::Held(f64::NAN);
-    assert_eq!(code(&problem), "physics-held-value");
+    assert_eq!(error_code(&problem), "physics-held-value");
 }
 
 #[test]
-fn values_that_are_missing_have_no_weight() {
+fn missing_values_have_no_weight() {
     let mut problem = toy("R");
     let flight = problem.conditions[0].flight.curves().map(|pair, curve| {
         let mut curve = curve.clone();
@@ -91,6 +93,7 @@ fn values_that_are_missing_have_no_weight() {
     });
     problem.conditions[0].flight = Arc::new(FrequencyResponse::new(flight));
     let found = diagnosis(&problem);
+    // 2e-3: the pull of the prior towards zero, and the change of 1e-3 at which the passes stop.
     assert!((found.fit.z[0] - TRUE_Z[0]).abs() < 2e-3);
     assert!((found.fit.z[1] - TRUE_Z[1]).abs() < 2e-3);
 }
@@ -109,7 +112,7 @@ fn with_runs(change: impl Fn(&mut ToyCondition)) -> PhysicsProblem {
 }
 
 #[test]
-fn a_run_that_is_the_nominal_model_tells_nothing() {
+fn a_run_equal_to_the_nominal_model_gives_no_information() {
     let found = diagnosis(&with_runs(|toy| toy.runs[1][0].1 = toy.base.clone()));
     let parameter = &found.parameters[1];
     assert_eq!(parameter.z, 0.0);
@@ -121,10 +124,10 @@ fn a_run_that_is_the_nominal_model_tells_nothing() {
 }
 
 #[test]
-fn identical_runs_of_two_parameters_cannot_be_told_apart() {
+fn parameters_with_identical_runs_are_a_correlated_pair() {
     let found = diagnosis(&with_runs(|toy| {
-        let again = toy.runs[1].clone();
-        toy.runs.push(again);
+        let copy = toy.runs[1].clone();
+        toy.runs.push(copy);
     }));
     let [pair] = found.pairs[..] else {
         panic!("one pair: {:?}", found.pairs)
@@ -132,7 +135,10 @@ fn identical_runs_of_two_parameters_cannot_be_told_apart() {
     assert_eq!(pair.parameters, [1, 2]);
     assert!(pair.correlation < -0.99);
     let [first, second] = [1, 2].map(|index| found.fit.z[index]);
-    assert!((first - second).abs() < 1e-9, "the prior shares the change");
+    assert!(
+        (first - second).abs() < 1e-9,
+        "the prior divides the change equally"
+    );
     assert_eq!(found.parameters[1].strongest_pair.unwrap(), pair);
 }
 
@@ -149,12 +155,13 @@ fn forty_parameters_are_fitted() {
     });
     assert_eq!(problem.parameters.len(), 40);
     let found = diagnosis(&problem);
+    // A score before the first parameter, and one after each.
     assert_eq!(found.scores.unwrap().stepwise.len(), 41);
     assert!(found.fit.z.iter().all(|z| z.abs() <= 3.0));
 }
 
 #[test]
-fn runs_with_enormous_changes_give_no_values_beyond_the_bound() {
+fn runs_with_enormous_changes_give_values_within_the_bound_or_an_error() {
     let problem = with_runs(|toy| {
         let huge = DMatrix::from_element(3, 3, 1e200);
         let base = &toy.base;
@@ -168,7 +175,8 @@ fn runs_with_enormous_changes_give_no_values_beyond_the_bound() {
 }
 
 #[test]
-fn flight_far_from_the_physics_model_stops_at_the_bound() {
+fn a_parameter_far_from_the_physics_model_stops_at_the_bound_of_three() {
+    // The true value is 6 plausible standard deviations.
     let mut problem = toy("R");
     let omega = toy_omega();
     for (condition, mut toy) in problem.conditions.iter_mut().zip(toy_conditions()) {
@@ -183,7 +191,7 @@ fn flight_far_from_the_physics_model_stops_at_the_bound() {
 }
 
 #[test]
-fn without_gains_or_delays_the_channels_stay_at_one() {
+fn channels_stay_uncorrected_if_gains_and_delays_are_fixed() {
     let problem = PhysicsProblem {
         options: PhysicsOptions {
             gain_sd: 0.0,
@@ -200,8 +208,7 @@ fn without_gains_or_delays_the_channels_stay_at_one() {
     }
 }
 
-/// Receiver that cancels after a number of polls, and asserts that the reported steps do not exceed
-/// the total.
+/// Cancels after a number of polls, and asserts that the reported steps do not exceed the total.
 struct Impatient(AtomicUsize);
 
 impl Progress for Impatient {

@@ -18,11 +18,12 @@ fn assert_close(found: &[f64], expected: &Value, tolerance: f64, what: &str) {
     for (index, (found, expected)) in found.iter().zip(&expected).enumerate() {
         assert!(
             (found - expected).abs() <= tolerance,
-            "{what}, {index}: {found} instead of {expected}"
+            "{what}[{index}]: {found} instead of {expected}"
         );
     }
 }
 
+/// Asserts that a diagnosis equals a reference result.
 fn assert_known(found: &PhysicsDiagnosis, known: &Value) {
     let tolerance = REFERENCE["toy"]["tolerance"]["z"].as_f64().unwrap();
     let passes = known["passes"].as_array().unwrap();
@@ -144,7 +145,7 @@ fn the_model_at_chosen_values_has_the_response_of_the_family() {
 }
 
 #[test]
-fn sample_time_and_delays_are_those_of_the_representative() {
+fn a_family_of_sampled_models_with_delays_has_the_response_of_its_models() {
     let timing = Timing {
         sample_time_s: Some(0.02),
         input_delays_s: Some(vec![0.03, 0.0]),
@@ -186,7 +187,7 @@ fn discretised(model: &StateSpace, timing: &Timing) -> StateSpace {
 }
 
 #[test]
-fn the_curvature_of_two_runs_is_reported() {
+fn only_a_parameter_with_two_runs_has_a_curvature_and_it_is_proportional_to_the_value() {
     let increments = toy_conditions()[1].increments();
     // Parameter b has a single run.
     let [a, b] = increments.curvatures(&[2.0, 2.0])[..] else {
@@ -201,7 +202,7 @@ fn the_curvature_of_two_runs_is_reported() {
 }
 
 #[test]
-fn derivatives_agree_with_differences() {
+fn derivatives_agree_with_central_differences() {
     const STEP: f64 = 1e-5;
     let condition = &toy_conditions()[2];
     let omega = toy_omega();
@@ -216,6 +217,7 @@ fn derivatives_agree_with_differences() {
         });
         for (place, derivative) in found.derivatives[parameter].iter().enumerate() {
             let difference = (above[place] - below[place]) / (2.0 * STEP);
+            // The error of a central difference is of the order of the square of the step.
             assert!((difference - derivative).norm() < 1e-8);
         }
     }

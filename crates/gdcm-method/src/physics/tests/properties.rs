@@ -64,8 +64,7 @@ fn scaled_model(model: &StateSpace, outputs: [f64; 2], inputs: [f64; 2]) -> Stat
 /// units.
 fn in_other_units(outputs: [f64; 2], inputs: [f64; 2]) -> PhysicsProblem {
     let mut problem = toy("R_disturbed");
-    for (condition, toy) in problem.conditions.iter_mut().zip(toy_conditions()) {
-        let mut toy = toy;
+    for (condition, mut toy) in problem.conditions.iter_mut().zip(toy_conditions()) {
         toy.base = scaled_model(&toy.base, outputs, inputs);
         for (_, run) in toy.runs.iter_mut().flatten() {
             *run = scaled_model(run, outputs, inputs);
@@ -104,6 +103,7 @@ fn in_other_states(factors: [f64; 3]) -> PhysicsProblem {
 fn the_order_of_conditions_does_not_matter() {
     let expected = diagnosis(&toy("R_disturbed"));
     let mut problem = toy("R_disturbed");
+    // Another order of the three conditions.
     problem.conditions.rotate_left(1);
     problem.conditions.swap(0, 1);
     assert_same(&diagnosis(&problem), &expected, &[0, 1]);
@@ -177,20 +177,16 @@ proptest! {
         delays_s in prop::array::uniform4(-0.02..0.02_f64),
         ln_gains in prop::array::uniform3(prop::array::uniform4(-0.08..0.08_f64)),
     ) {
-        let conditions = toy_conditions();
+        let mut conditions = Vec::new();
+        for (index, (toy, ln_gains)) in toy_conditions().iter().zip(ln_gains).enumerate() {
+            let flight = exact_flight(toy, &z, ln_gains, delays_s);
+            conditions.push(toy.condition(index as i64 + 1, flight));
+        }
         let problem = PhysicsProblem {
             omega: toy_omega(),
             on_axis: PairTable::from_fn(2, 2, |pair| pair.output == pair.input),
             parameters: vec![ParameterValue::Fitted; 2],
-            conditions: conditions
-                .iter()
-                .zip(ln_gains)
-                .enumerate()
-                .map(|(index, (condition, ln_gains))| {
-                    let flight = exact_flight(condition, &z, ln_gains, delays_s);
-                    condition.condition(index as i64 + 1, flight)
-                })
-                .collect(),
+            conditions,
             options: PhysicsOptions::default(),
         };
         let found = diagnosis(&problem);
@@ -201,7 +197,8 @@ proptest! {
 }
 
 #[test]
-fn a_held_value_is_kept_and_the_rest_is_fitted() {
+fn a_held_parameter_keeps_its_value_and_the_other_is_fitted() {
+    // The true values are 0.8 and -0.6.
     let mut problem = toy("R");
     problem.parameters[0] = ParameterValue::Held(0.8);
     let found = diagnosis(&problem);
@@ -215,7 +212,9 @@ fn a_held_value_is_kept_and_the_rest_is_fitted() {
 }
 
 #[test]
-fn a_family_of_responses_fits_like_one_of_matrices_for_small_changes() {
+fn a_family_of_responses_recovers_small_changes() {
+    // Such a family changes its responses in proportion to the parameters, so that it is accurate
+    // for small values only.
     let omega = toy_omega();
     let mut problem = toy("R");
     for (condition, toy) in problem.conditions.iter_mut().zip(toy_conditions()) {
@@ -230,10 +229,10 @@ fn a_family_of_responses_fits_like_one_of_matrices_for_small_changes() {
     assert!((found.fit.z[1] + 0.04).abs() < 5e-3, "{}", found.fit.z[1]);
 }
 
-/// Tests the normal equations summed over the conditions: `sum_c S'_kk (z_c - z) = z`, the pull of
-/// the prior. The passes stop when no value moves by more than 1e-3.
+/// Tests the normal equations summed over the conditions: `sum_c S'_kk (z_c - z) = z`, where the
+/// right side is the pull of the prior. The passes stop when no value moves by more than 1e-3.
 #[test]
-fn values_of_single_conditions_average_to_the_common_value_but_for_the_prior() {
+fn values_of_the_conditions_average_to_the_common_value_up_to_the_prior() {
     let found = diagnosis(&toy("R_disturbed"));
     for parameter in 0..2 {
         let z = found.fit.z[parameter];

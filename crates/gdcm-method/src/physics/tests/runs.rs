@@ -16,6 +16,7 @@ use gdcm_model::dataset::{
 use super::{diagnosis, diagonal, toy, toy_conditions, toy_omega};
 use crate::physics::{ConditionIncrements, MatchedRuns, OfferedParameter, PhysicsProblem};
 
+/// Returns the offset of the trim from the condition.
 fn offsets(airspeed_kt: f64) -> Option<BTreeMap<String, f64>> {
     Some(BTreeMap::from([("airspeed_kt".to_owned(), airspeed_kt)]))
 }
@@ -33,6 +34,7 @@ fn model(name: &str, airspeed_kt: f64, system: &StateSpace) -> Model {
     model
 }
 
+/// Creates a run of a parameter, moved by `delta` \[%\].
 fn run(name: &str, parameter: &str, delta: f64, system: &StateSpace) -> MovedModel {
     MovedModel {
         model: model(name, 0.0, system),
@@ -47,9 +49,11 @@ fn run(name: &str, parameter: &str, delta: f64, system: &StateSpace) -> MovedMod
 /// Plausible standard deviations of the reference parameters \[%\].
 const PLAUSIBLE: [f64; 2] = [5.0, 40.0];
 
+/// Returns the reference parameters with these plausible standard deviations \[%\].
 fn offered(plausible: [f64; 2]) -> Vec<OfferedParameter> {
-    let names = ["a", "b"].iter().zip(plausible);
-    names
+    ["a", "b"]
+        .iter()
+        .zip(plausible)
         .map(|(name, plausible_sd)| OfferedParameter {
             name: (*name).to_owned(),
             unit: "%".to_owned(),
@@ -95,7 +99,9 @@ fn refusals(runs: Vec<MovedModel>, is_used: &dyn Fn(&Model) -> bool) -> Vec<&'st
         .collect()
 }
 
-fn toy_problem(scale: f64) -> PhysicsProblem {
+/// Returns the reference problem with disturbed flight and a parameter unit of 1 / `scale`: its
+/// steps and plausible standard deviations are `scale` times as large.
+fn problem_in_parameter_unit(scale: f64) -> PhysicsProblem {
     let plausible = PLAUSIBLE.map(|sd| sd * scale);
     let mut problem = toy("R_disturbed");
     for (index, toy) in problem.conditions.iter_mut().enumerate() {
@@ -113,7 +119,7 @@ fn toy_problem(scale: f64) -> PhysicsProblem {
 fn the_unit_of_a_parameter_does_not_change_the_result() {
     let expected = diagnosis(&toy("R_disturbed"));
     for scale in [1.0, 0.01, 1000.0] {
-        let found = diagnosis(&toy_problem(scale));
+        let found = diagnosis(&problem_in_parameter_unit(scale));
         for (found, expected) in found.parameters.iter().zip(&expected.parameters) {
             assert!((found.z - expected.z).abs() < 1e-9);
             let [found, expected] =
@@ -124,7 +130,7 @@ fn the_unit_of_a_parameter_does_not_change_the_result() {
 }
 
 #[test]
-fn runs_that_fit_are_used_with_the_nominal_model_as_their_base() {
+fn matching_runs_are_used_with_the_nominal_model_as_base() {
     let condition = condition(1, toy_runs(1, 1.0));
     let matched = MatchedRuns::new(&condition, &offered(PLAUSIBLE), &|_| true);
     assert!(matched.refused.is_empty());
@@ -137,20 +143,20 @@ fn runs_that_fit_are_used_with_the_nominal_model_as_their_base() {
 #[test]
 fn a_run_that_does_not_fit_its_base_is_refused() {
     let system = toy_conditions()[1].runs[0][0].1.clone();
-    let moved = |change: &dyn Fn(&mut MovedModel)| {
-        let mut moved = run("run", "a", 5.0, &system);
-        change(&mut moved);
-        refusals(vec![moved], &|_| true)
+    let refused_after = |change: &dyn Fn(&mut MovedModel)| {
+        let mut changed = run("run", "a", 5.0, &system);
+        change(&mut changed);
+        refusals(vec![changed], &|_| true)
     };
-    assert_eq!(moved(&|_| {}), [""; 0]);
+    assert_eq!(refused_after(&|_| {}), [""; 0], "unchanged, the run fits");
     assert_eq!(
-        moved(&|run| run.model.origin = Origin::Perturbed {
+        refused_after(&|run| run.model.origin = Origin::Perturbed {
             perturbation: offsets(7.0)
         }),
         ["run-without-base"]
     );
     assert_eq!(
-        moved(&|run| run.model.states = ["p", "u", "q"].map(String::from).into()),
+        refused_after(&|run| run.model.states = ["p", "u", "q"].map(String::from).into()),
         ["run-states-differ"]
     );
     let timing = Timing {
@@ -158,7 +164,7 @@ fn a_run_that_does_not_fit_its_base_is_refused() {
         ..Timing::default()
     };
     assert_eq!(
-        moved(&|run| {
+        refused_after(&|run| {
             let timed = system.clone().timed(timing.clone()).unwrap();
             run.model.dynamics = Dynamics::StateSpace(timed);
         }),
@@ -172,18 +178,18 @@ fn a_run_that_does_not_fit_its_base_is_refused() {
     )
     .unwrap();
     assert_eq!(
-        moved(&|run| run.model.dynamics = Dynamics::StateSpace(smaller.clone())),
+        refused_after(&|run| run.model.dynamics = Dynamics::StateSpace(smaller.clone())),
         ["run-shape-differs"]
     );
     assert_eq!(
-        moved(&|run| {
+        refused_after(&|run| {
             let base = toy_conditions()[1].base.clone();
             run.model.dynamics = Dynamics::StateSpace(base);
         }),
         ["run-changes-nothing"]
     );
     assert_eq!(
-        moved(&|run| {
+        refused_after(&|run| {
             run.moved = MovedParameters::Run(ParameterChange {
                 name: "a".to_owned(),
                 delta: 5.0,
@@ -203,7 +209,7 @@ fn a_run_that_does_not_fit_its_base_is_refused() {
 fn repeated_and_superfluous_runs_are_refused() {
     let toy = toy_conditions();
     let [plus, minus] = [0, 1].map(|index| &toy[1].runs[0][index].1);
-    let other = &toy[1].runs[1][0].1;
+    let of_parameter_b = &toy[1].runs[1][0].1;
     let first = run("first", "a", 5.0, plus);
     let refused = |later: &[MovedModel]| {
         let runs = [std::slice::from_ref(&first), later].concat();
@@ -220,7 +226,7 @@ fn repeated_and_superfluous_runs_are_refused() {
     assert_eq!(
         refused(&[
             run("second", "a", -5.0, minus),
-            run("third", "a", 2.0, other)
+            run("third", "a", 2.0, of_parameter_b)
         ]),
         ["run-too-many"]
     );
@@ -228,34 +234,37 @@ fn repeated_and_superfluous_runs_are_refused() {
 
 #[test]
 fn a_condition_without_the_runs_of_a_parameter_is_left_out() {
-    let omission = |runs: Vec<MovedModel>| {
+    let omission_code = |runs: Vec<MovedModel>| {
         let condition = condition(1, runs);
         let matched = MatchedRuns::new(&condition, &offered(PLAUSIBLE), &|_| true);
         matched.increments(&offered(PLAUSIBLE)).unwrap_err().code()
     };
-    assert_eq!(omission(Vec::new()), "condition-without-runs");
+    assert_eq!(omission_code(Vec::new()), "condition-without-runs");
     let mut runs = toy_runs(1, 1.0);
     runs.truncate(2);
-    assert_eq!(omission(runs), "condition-lacks-run");
+    assert_eq!(omission_code(runs), "condition-lacks-run");
 }
 
 #[test]
-fn a_representative_with_other_states_gets_the_changes_of_the_responses() {
+fn a_representative_with_other_states_is_changed_by_its_responses() {
     let condition = condition(1, toy_runs(1, 1.0));
     let matched = MatchedRuns::new(&condition, &offered(PLAUSIBLE), &|_| true);
-    let mut other = model("nominal", 0.0, &toy_conditions()[1].base);
-    other.states = ["x1", "x2", "x3"].map(String::from).into();
-    let family = matched.family(&other, &offered(PLAUSIBLE), &toy_omega());
+    let mut representative = model("nominal", 0.0, &toy_conditions()[1].base);
+    representative.states = ["x1", "x2", "x3"].map(String::from).into();
+    let family = matched.family(&representative, &offered(PLAUSIBLE), &toy_omega());
     assert_eq!(family.unwrap().points(), Some(toy_omega().len()));
     let increments = matched.increments(&offered(PLAUSIBLE)).unwrap();
     assert_eq!(
-        increments.apply(&other, &[0.1, 0.1]).unwrap_err().code(),
+        increments
+            .apply(&representative, &[0.1, 0.1])
+            .unwrap_err()
+            .code(),
         "increment-states-differ"
     );
 }
 
 #[test]
-fn parameters_are_offered_with_the_largest_step_where_nothing_is_declared_plausible() {
+fn an_undeclared_plausible_deviation_defaults_to_the_largest_step() {
     let header = |parameters| DatasetHeader {
         name: String::new(),
         description: String::new(),
@@ -279,11 +288,12 @@ fn parameters_are_offered_with_the_largest_step_where_nothing_is_declared_plausi
         .iter()
         .map(|parameter| (parameter.name.as_str(), parameter.plausible_sd))
         .collect();
+    // b is declared, a has runs of up to 5 %, idle has no run.
     assert_eq!(summary, [("b", 7.0), ("a", 5.0)]);
 }
 
 #[test]
-fn increments_need_steps_that_can_be_divided_by() {
+fn steps_of_runs_must_be_finite_and_not_zero() {
     let toy = &toy_conditions()[1];
     for z in [0.0, f64::NAN, f64::INFINITY] {
         let mut toy = toy.clone();

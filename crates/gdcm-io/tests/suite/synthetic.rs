@@ -1,5 +1,5 @@
-//! Synthetic aircraft, flights of them in closed loop through gusts, and datasets, for these tests
-//! and those of the program.
+//! Synthetic aircraft, their flights in closed loop through gusts, and synthetic datasets. The
+//! tests of the whole program include this file by its path.
 
 use nalgebra::{DMatrix, DVector, dmatrix};
 use serde_json::{Value, json};
@@ -7,8 +7,8 @@ use serde_json::{Value, json};
 use gdcm_model::dataset::StateSpace;
 use gdcm_model::simulation::FlightRecord;
 
-/// Returns a number of test cases: `few`, or `many` if the environment variable `GDCM_THOROUGH` is
-/// set, as before a merge.
+/// Returns the number of random cases of a test: `few`, or `many` if the environment variable
+/// `GDCM_THOROUGH` is set, as in continuous integration.
 pub fn tries<N>(few: N, many: N) -> N {
     if std::env::var_os("GDCM_THOROUGH").is_some() {
         many
@@ -41,7 +41,7 @@ impl Gusts {
 pub struct Flight {
     pub aircraft: StateSpace,
     pub gusts: Gusts,
-    /// Inputs = sweep - feedback outputs.
+    /// Gain matrix F of the loop: u = sweep - F y.
     pub feedback: DMatrix<f64>,
     /// Length of a record \[s\].
     pub length_s: f64,
@@ -51,7 +51,7 @@ pub struct Flight {
 
 impl Flight {
     /// Creates flights of 40 s, logged at 25 Hz, with a light feedback.
-    pub fn of(aircraft: StateSpace, gusts: Gusts) -> Self {
+    pub fn new(aircraft: StateSpace, gusts: Gusts) -> Self {
         Self {
             aircraft,
             gusts,
@@ -66,10 +66,11 @@ impl Flight {
         (0..count).map(|record| self.record(seed, record)).collect()
     }
 
-    /// Simulates a record in steps of a tenth of the sample time.
+    /// Simulates a record in steps of a tenth of the sample time. Inputs have a trim of 5, outputs
+    /// a trim that differs by output and record.
     fn record(&self, seed: u64, record: usize) -> FlightRecord {
-        const FINER: usize = 10;
-        let step_s = self.sample_time_s / FINER as f64;
+        const STEPS_PER_SAMPLE: usize = 10;
+        let step_s = self.sample_time_s / STEPS_PER_SAMPLE as f64;
         let a = self.aircraft.a();
         let b = self.aircraft.b();
         let c = self.aircraft.c();
@@ -85,46 +86,41 @@ impl Flight {
         // over each step.
         let closed = a - b * &self.feedback * c;
         let transition = (&closed * step_s).exp();
-        let mut both = DMatrix::zeros(order + inputs, order + inputs);
-        both.view_mut((0, 0), (order, order))
+        // exp([A B; 0 0] dt) = [Phi Gamma; 0 I], with Gamma the effect of an input held for dt.
+        let mut augmented = DMatrix::zeros(order + inputs, order + inputs);
+        augmented
+            .view_mut((0, 0), (order, order))
             .copy_from(&(&closed * step_s));
-        both.view_mut((0, order), (order, inputs))
+        augmented
+            .view_mut((0, order), (order, inputs))
             .copy_from(&(b * step_s));
-        let held = both.exp().view((0, order), (order, inputs)).into_owned();
-        let phases: Vec<f64> = (0..40 * inputs)
-            .map(|_| std::f64::consts::TAU * random.uniform())
-            .collect();
-        let sweep = |time: f64, input: usize| {
-            // One input per record has a large sweep, the others a small one.
-            let size = if input == record % inputs { 1.0 } else { 0.3 };
-            let lines = (0..40).map(|line| {
-                let omega = 0.25 + 0.2 * line as f64 + 0.01 * (input + inputs * record) as f64;
-                (omega * time + phases[line * inputs + input]).sin() / (1.0 + 0.2 * omega)
-            });
-            0.3 * size * lines.sum::<f64>()
-        };
+        let input_effect = augmented
+            .exp()
+            .view((0, order), (order, inputs))
+            .into_owned();
+        let sweep = Sweep::new(inputs, record, &mut random);
         let samples = (self.length_s / self.sample_time_s).round() as usize;
         let trim = DVector::from_fn(outputs, |output, _| 0.5 + output as f64 + record as f64);
         let mut x = DVector::from_fn(order, |_, _| random.normal());
-        let mut gust = DVector::zeros(order);
+        let mut gust: DVector<f64> = DVector::zeros(order);
         let mut u = DMatrix::zeros(samples, inputs);
         let mut y = DMatrix::zeros(samples, outputs);
         for sample in 0..samples {
             let time = sample as f64 * self.sample_time_s;
             let output = c * &x;
-            let command = DVector::from_fn(inputs, |input, _| sweep(time, input));
-            let input = command - &self.feedback * &output;
+            let input = sweep.command(time) - &self.feedback * &output;
             u.row_mut(sample).tr_copy_from(&input.add_scalar(5.0));
             let noise = DVector::from_fn(outputs, |_, _| self.gusts.sensors * random.normal());
             y.row_mut(sample).tr_copy_from(&(output + &trim + noise));
-            for fine in 0..FINER {
-                let middle = time + (fine as f64 + 0.5) * step_s;
-                let command = DVector::from_fn(inputs, |input, _| sweep(middle, input));
-                // Gusts with a time constant of 1 s.
-                gust.iter_mut().for_each(|gust| {
-                    *gust += step_s * (4.0 * random.normal() / step_s.sqrt() - *gust)
-                });
-                x = &transition * x + &held * command + &gust * (step_s * self.gusts.states);
+            for step in 0..STEPS_PER_SAMPLE {
+                let middle = time + (step as f64 + 0.5) * step_s;
+                // Gusts: white noise through a first-order lag of 1 s.
+                for gust in gust.iter_mut() {
+                    *gust += step_s * (4.0 * random.normal() / step_s.sqrt() - *gust);
+                }
+                x = &transition * x
+                    + &input_effect * sweep.command(middle)
+                    + &gust * (step_s * self.gusts.states);
             }
         }
         FlightRecord {
@@ -135,6 +131,47 @@ impl Flight {
             inputs: u,
             outputs: y,
         }
+    }
+}
+
+/// Commands of a record: a multisine of 40 lines with random phases for each input, from 0.25 to
+/// 8.05 rad/s in steps of 0.2 rad/s. Lines of different inputs and records are 0.01 rad/s apart.
+struct Sweep {
+    inputs: usize,
+    record: usize,
+    /// Phases \[rad\], line by line.
+    phases: Vec<f64>,
+}
+
+impl Sweep {
+    const LINES: usize = 40;
+
+    fn new(inputs: usize, record: usize, random: &mut Random) -> Self {
+        Self {
+            inputs,
+            record,
+            phases: (0..Self::LINES * inputs)
+                .map(|_| std::f64::consts::TAU * random.uniform())
+                .collect(),
+        }
+    }
+
+    /// Returns the commands of all inputs at a time \[s\].
+    fn command(&self, time_s: f64) -> DVector<f64> {
+        DVector::from_fn(self.inputs, |input, _| self.channel(input, time_s))
+    }
+
+    fn channel(&self, input: usize, time_s: f64) -> f64 {
+        // One input per record has a large sweep, the others a small one.
+        let is_main = input == self.record % self.inputs;
+        let size = if is_main { 1.0 } else { 0.3 };
+        let offset = 0.01 * (input + self.inputs * self.record) as f64;
+        let lines = (0..Self::LINES).map(|line| {
+            let omega = 0.25 + 0.2 * line as f64 + offset;
+            let phase = self.phases[line * self.inputs + input];
+            (omega * time_s + phase).sin() / (1.0 + 0.2 * omega)
+        });
+        0.3 * size * lines.sum::<f64>()
     }
 }
 
@@ -159,27 +196,42 @@ impl Random {
 /// Returns a stable aircraft with two inputs and two outputs.
 pub fn stable_aircraft() -> StateSpace {
     StateSpace::new(
-        dmatrix![-0.4, 2.1, 0.0, 0.0; -2.1, -0.4, 0.0, 0.3; 0.0, 0.0, -1.5, 0.8; 0.2, 0.0, -1.1, -0.6],
-        dmatrix![1.0, 0.2; 0.0, 0.6; 0.5, -1.0; -0.3, 0.8],
-        dmatrix![0.6, 1.0, 0.3, 0.0; 0.2, 0.5, -0.8, 1.0],
+        dmatrix![
+            -0.4, 2.1, 0.0, 0.0;
+            -2.1, -0.4, 0.0, 0.3;
+            0.0, 0.0, -1.5, 0.8;
+            0.2, 0.0, -1.1, -0.6
+        ],
+        dmatrix![
+            1.0, 0.2;
+            0.0, 0.6;
+            0.5, -1.0;
+            -0.3, 0.8
+        ],
+        dmatrix![
+            0.6, 1.0, 0.3, 0.0;
+            0.2, 0.5, -0.8, 1.0
+        ],
         DMatrix::zeros(2, 2),
     )
-    .expect("its matrices fit")
+    .expect("the shapes of the matrices agree")
 }
 
 /// Returns a dataset of two lags (poles -1 and -3 rad/s) with one physics and one identified model,
 /// whose output matrices C are given.
 pub fn two_lags(physics: [[f64; 2]; 2], identified: [[f64; 2]; 2]) -> Value {
-    let lags = |c: [[f64; 2]; 2]| {
-        json!({"name": "model", "A": [[-1.0, 0.0], [0.0, -3.0]], "B": [[1.0, 0.0], [0.0, 1.0]], "C": c,
-            "D": [[0.0, 0.0], [0.0, 0.0]]})
-    };
-    let mut nominal = lags(physics);
+    let mut nominal = lag_model(physics);
     nominal["role"] = json!("nominal");
     json!({"format": "gdcm-dataset", "version": 1, "name": "two lags",
         "inputs": [{"name": "I0", "unit": "%"}, {"name": "I1", "unit": "%"}],
         "outputs": [{"name": "O0", "unit": "deg/s"}, {"name": "O1", "unit": "deg/s"}],
-        "on_axis": [["O0", "I0"], ["O1", "I1"]], "frequency_band": {"min": 0.5, "max": 12.0, "unit": "rad/s"},
+        "on_axis": [["O0", "I0"], ["O1", "I1"]],
+        "frequency_band": {"min": 0.5, "max": 12.0, "unit": "rad/s"},
         "conditions": [{"id": 1, "name": "hover", "airspeed_kt": 0.0, "physics_models": [nominal],
-            "identified_models": [lags(identified)]}]})
+            "identified_models": [lag_model(identified)]}]})
+}
+
+fn lag_model(c: [[f64; 2]; 2]) -> Value {
+    json!({"name": "model", "A": [[-1.0, 0.0], [0.0, -3.0]], "B": [[1.0, 0.0], [0.0, 1.0]],
+        "C": c, "D": [[0.0, 0.0], [0.0, 0.0]]})
 }

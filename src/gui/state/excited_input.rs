@@ -58,7 +58,7 @@ impl Excitation {
         excitations
     }
 
-    /// Returns whether an input's share is at least [`EXCITED_SHARE`].
+    /// Returns whether an input's share is at least `EXCITED_SHARE`.
     pub fn excites(&self, input: usize) -> bool {
         self.share(input) >= EXCITED_SHARE
     }

@@ -176,7 +176,7 @@ impl SettingControls<'_, '_> {
 }
 
 /// Returns the horizontal position of a value on a slider rail, as egui's logarithmic slider places
-/// its handle: zero and values below [`SLIDER_START`] are at the left end.
+/// its handle: zero and values below `SLIDER_START` are at the left end.
 pub fn slider_place(rail: Rect, value: f64) -> f32 {
     let ends = [SLIDER_START.log10(), SLIDER_END.log10()];
     let log = value.max(SLIDER_START).log10().clamp(ends[0], ends[1]);

@@ -392,7 +392,7 @@ fn a_study_whose_dataset_has_changed_opens_and_lists_the_differences() {
     let loaded = workspace.loaded();
     let mut study = Study::new(loaded.dataset.clone());
     let model = |id, kind, name: &str| ModelId::new(ConditionId(id), kind, name);
-    decided(
+    apply(
         &mut study,
         &[
             setting_table::ALPHA_GAIN.to(0.5),

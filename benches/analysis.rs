@@ -133,14 +133,14 @@ fn all_conditions(criterion: &mut Criterion, name: &str, engine: impl Fn() -> En
         let study = Study::new(example());
         bencher.iter(|| engine().analyze(black_box(&study), &Unobserved));
     });
-    for (name, change) in CHANGES {
+    for change in CHANGES {
         let mut engine = engine();
         let mut study = Study::new(example());
         let mut turn = 0.0;
-        group.bench_function(name, |bencher| {
+        group.bench_function(change.name, |bencher| {
             bencher.iter(|| {
                 turn += 1.0;
-                change(&mut study, turn);
+                (change.carry_out)(&mut study, turn);
                 engine.analyze(&study, &Unobserved)
             });
         });
@@ -148,31 +148,57 @@ fn all_conditions(criterion: &mut Criterion, name: &str, engine: impl Fn() -> En
     group.finish();
 }
 
-/// Changes of a study, by name. Every turn sets another value or toggles a decision, so that no
-/// result that depends on it is cached.
-const CHANGES: [(&str, fn(&mut Study, f64)); 7] = [
-    ("alpha dragged", |study, turn| {
-        apply(study, setting_table::ALPHA_GAIN.to(1.0 + 1e-6 * turn));
-    }),
-    ("alpha dragged under lead", |study, turn| {
-        apply_under_lead(study, setting_table::ALPHA_GAIN.to(1.0 + 1e-6 * turn));
-    }),
-    ("alpha of the delays dragged under lead", |study, turn| {
-        apply_under_lead(study, setting_table::ALPHA_DELAY.to(1.0 + 1e-6 * turn));
-    }),
-    ("n dragged under lead", |study, turn| {
-        apply_under_lead(study, setting_table::LEAD_POLE.to(3.0 + 1e-6 * turn));
-    }),
-    ("R_max dragged under lead", |study, turn| {
-        apply_under_lead(study, setting_table::LEAD_LIMIT.to(10.0 + 1e-6 * turn));
-    }),
-    ("band edge dragged", |study, turn| {
-        let band = Band::new(0.5, 12.0 + 1e-6 * turn).expect("rising");
-        apply(study, setting_table::BAND.to(band));
-    }),
-    ("model rejected", |study, turn| {
-        apply(study, nominal_rejected(turn % 2.0 == 0.0));
-    }),
+/// A change of a study. Every turn sets another value or toggles a decision, so that no result that
+/// depends on it is cached.
+struct StudyChange {
+    name: &'static str,
+    carry_out: fn(&mut Study, f64),
+}
+
+const CHANGES: [StudyChange; 7] = [
+    StudyChange {
+        name: "alpha dragged",
+        carry_out: |study, turn| {
+            apply(study, setting_table::ALPHA_GAIN.to(1.0 + 1e-6 * turn));
+        },
+    },
+    StudyChange {
+        name: "alpha dragged under lead",
+        carry_out: |study, turn| {
+            apply_under_lead(study, setting_table::ALPHA_GAIN.to(1.0 + 1e-6 * turn));
+        },
+    },
+    StudyChange {
+        name: "alpha of the delays dragged under lead",
+        carry_out: |study, turn| {
+            apply_under_lead(study, setting_table::ALPHA_DELAY.to(1.0 + 1e-6 * turn));
+        },
+    },
+    StudyChange {
+        name: "n dragged under lead",
+        carry_out: |study, turn| {
+            apply_under_lead(study, setting_table::LEAD_POLE.to(3.0 + 1e-6 * turn));
+        },
+    },
+    StudyChange {
+        name: "R_max dragged under lead",
+        carry_out: |study, turn| {
+            apply_under_lead(study, setting_table::LEAD_LIMIT.to(10.0 + 1e-6 * turn));
+        },
+    },
+    StudyChange {
+        name: "band edge dragged",
+        carry_out: |study, turn| {
+            let band = Band::new(0.5, 12.0 + 1e-6 * turn).expect("rising");
+            apply(study, setting_table::BAND.to(band));
+        },
+    },
+    StudyChange {
+        name: "model rejected",
+        carry_out: |study, turn| {
+            apply(study, nominal_rejected(turn % 2.0 == 0.0));
+        },
+    },
 ];
 
 fn apply(study: &mut Study, edit: Edit) {

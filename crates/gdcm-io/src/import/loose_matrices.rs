@@ -146,7 +146,12 @@ pub(super) fn models_of_matrices(loose: Vec<LooseMatrix>) -> Found<FoundModel> {
 fn models_of_group(group: &str, matrices: &[LooseMatrix]) -> Found<FoundModel> {
     let mut found = Found::default();
     if let Some(fault) = duplicate_matrix(matrices) {
-        found.faults.push(group_fault(group, fault));
+        // The paths of duplicate files name their folders; the group is the same in both.
+        let place = match &fault {
+            RecognitionFault::DuplicateFile { .. } => "",
+            _ => group,
+        };
+        found.faults.push(group_fault(place, fault));
         return found;
     }
     let variables: Vec<Variable> = matrices
@@ -335,6 +340,7 @@ mod tests {
         let files = ["c1/:A.csv", "c1/:B.csv", "c1/:C.csv", "c2/:A.csv"];
         let found = models_of_matrices(files.iter().map(|file| matrix(file, 1, 1)).collect());
         assert!(found.items.is_empty());
+        assert_eq!(only_fault(&found).files, "");
         assert_eq!(
             only_fault(&found).fault,
             RecognitionFault::DuplicateFile {

@@ -172,13 +172,15 @@ impl Marks {
         }
     }
 
-    /// Describes open tasks, such as "3 suggested as outliers, not rejected".
+    /// Describes open tasks, such as "3 models suggested as outliers, not rejected".
     fn open_tasks(&self) -> Vec<String> {
         let mut tasks = Vec::new();
         match self.suggested {
             0 => {}
-            1 => tasks.push("1 suggested as an outlier, not rejected".to_owned()),
-            count => tasks.push(format!("{count} suggested as outliers, not rejected")),
+            1 => tasks.push("1 model suggested as an outlier, not rejected".to_owned()),
+            count => tasks.push(format!(
+                "{count} models suggested as outliers, not rejected"
+            )),
         }
         if self.unmatched_gains > 0 {
             let gains = counted(self.unmatched_gains, "held gain");

@@ -89,7 +89,7 @@ impl LimitEditor<'_> {
                 self.note_ui(ui, "mean over the on-axis responses");
             }
             Requirement::MuadShareOnAxis => {
-                let field = LimitField::in_percent("Least share inside MUAD");
+                let field = LimitField::in_percent("Minimum share inside MUAD");
                 self.field_ui(
                     ui,
                     &field,

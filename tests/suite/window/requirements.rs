@@ -242,7 +242,7 @@ fn limits_are_edited_in_the_grid_undone_and_reset() {
     assert_eq!(grid(&mut window), usual);
     let summary = Requirement::MuadShareOnAxis;
     edit_limit(&mut window, summary);
-    type_into(&mut window, "Least share inside MUAD", "100.5");
+    type_into(&mut window, "Minimum share inside MUAD", "100.5");
     let strict = grid(&mut window);
     for cell in &strict.row(summary).unwrap().cells {
         assert_eq!(cell.corrected.verdict, CellVerdict::Outside);

@@ -137,8 +137,8 @@ impl ModelCouplings {
     fn words(self) -> &'static str {
         match self {
             Self::None => "",
-            Self::Mixing => "; with mixing, exact",
-            Self::MixingAndFeedback => "; with mixing and feedback, exact",
+            Self::Mixing => "; mixing included exactly",
+            Self::MixingAndFeedback => "; mixing and feedback included exactly",
             Self::FeedbackAroundDelays => {
                 "; with mixing and feedback; the model's own delays are inside the loop, as Pade \
                 approximants"

@@ -28,7 +28,7 @@ pub enum ReadingNote {
     )]
     CommaSeparates,
     #[error(
-        "line {line} has {found} words for {}: it is not read as column names",
+        "line {line} has {found} entries for {}: it is not read as column names",
         counted(*columns, "column")
     )]
     HeadingMisfit {

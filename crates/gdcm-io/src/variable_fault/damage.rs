@@ -154,7 +154,7 @@ pub enum Damage {
     HeaderLiteral,
     #[error("a string in the header is not closed")]
     HeaderStringOpen,
-    #[error("the header contains an escape sequence")]
+    #[error("the header contains an escape sequence, which is not supported")]
     HeaderEscape,
     #[error("the header contains an unknown word")]
     HeaderWord,
@@ -197,6 +197,10 @@ impl Damage {
             | Self::LayoutFieldLength { .. }
             | Self::LayoutFieldSize { .. } => {
                 ": the log is damaged; copy it again from the vehicle".to_owned()
+            }
+            Self::HeaderEscape => {
+                ": use field names without quotation marks, backslashes and control characters"
+                    .to_owned()
             }
             _ => format!(" (byte {offset}): the file is damaged; write it again"),
         }

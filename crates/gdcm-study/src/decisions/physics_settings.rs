@@ -177,8 +177,14 @@ impl PhysicsSettings {
             check_positive(*plausible_sd)?;
         }
         for (setting, found) in [
-            ("prior of the channel gains", self.gain_sd),
-            ("prior of the channel delays", self.delay_sd_s),
+            (
+                "prior standard deviation of the channel gains",
+                self.gain_sd,
+            ),
+            (
+                "prior standard deviation of the channel delays",
+                self.delay_sd_s,
+            ),
         ] {
             if !found.is_finite() || found < 0.0 {
                 return Err(EditRefusal::OutOfRange {

@@ -210,7 +210,7 @@ impl KeepFailure {
     fn words(&self) -> String {
         match self {
             Self::Writing(error) => {
-                format!("unsaved decisions cannot be stored for recovery: {error}")
+                format!("unsaved decisions cannot be stored for recovery ({error}); save the study")
             }
             Self::Deletion(error) => format!("the recovery file cannot be deleted: {error}"),
         }

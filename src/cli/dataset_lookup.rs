@@ -1,5 +1,5 @@
 //! Conditions and responses that options name in a dataset, with the failure if the dataset lacks
-//! them.
+//! them; and lists of what the dataset has, for messages.
 
 use gdcm_model::dataset::{BundleKind, Channel, Condition, ConditionId, Dataset, Pair};
 use gdcm_sysid::records::record_table::shortened_list;
@@ -33,7 +33,7 @@ pub(super) fn condition_ids(dataset: &Dataset) -> String {
     ids.join(", ")
 }
 
-/// Lists the names of a condition's models of one kind; "none" without models.
+/// Lists the names of a condition's models of one kind, shortened after 20; "none" without models.
 pub(super) fn model_names(condition: &Condition, bundle: BundleKind) -> String {
     let names: Vec<&str> = condition
         .bundle(bundle)
@@ -68,7 +68,7 @@ pub(super) fn pairs_of(
     Ok(pairs)
 }
 
-/// Lists channel names, separated by commas.
+/// Lists all channel names, separated by commas.
 pub(super) fn channel_names(channels: &[Channel]) -> String {
     let names: Vec<&str> = channels
         .iter()

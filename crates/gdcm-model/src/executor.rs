@@ -31,7 +31,10 @@ struct TaskSlot<S, T> {
 }
 
 /// Applies a function to each argument on `executor`, and returns the results in argument order,
-/// whatever the executor does. Tasks that it does not run are completed on the caller's thread.
+/// whatever the order of execution.
+///
+/// As a safeguard, tasks that the executor drops without running are completed on the caller's
+/// thread. If an executor catches the panic of a task, the result of this task is missing.
 pub fn each<S: Send, T: Send>(
     executor: &dyn Executor,
     arguments: impl IntoIterator<Item = S>,

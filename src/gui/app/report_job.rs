@@ -2,7 +2,8 @@
 //!
 //! The report is *composed* first, which takes seconds, and then written. The export dialog
 //! composes it while the engineer makes choices, and passes it on. Its *inputs* are the displayed
-//! analysis (`shown`), the same with the current requirements, records, and identified poles.
+//! analysis (`shown`); a copy of it with the current requirements (`analysis`); the flight records;
+//! the identified poles; the names of the open files (`source`).
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -38,7 +39,8 @@ impl GdcmApp {
         self.state.forms.shown = Some(FormKind::Report);
     }
 
-    /// Starts writing the report; asks before overwriting a file.
+    /// Starts writing the report; asks before overwriting a file, unless the engineer has just
+    /// confirmed that: the command is then repeated with `postponed.existing` set to replace.
     pub(super) fn write_report(&mut self, path: PathBuf) {
         let path = self.files.at_home(path);
         self.start_report(path, self.postponed.existing, None);
@@ -76,7 +78,7 @@ impl GdcmApp {
     fn report_inputs(&self, analysis: Arc<Analysis>) -> Arc<ReportInputs> {
         let source = self.report_source();
         Arc::new(ReportInputs {
-            // The live analysis ignores the requirements and may contain older ones.
+            // The displayed analysis ignores the requirements and may contain older ones.
             analysis: Arc::new(analysis.with_requirements(&self.state.study.requirements)),
             shown: analysis,
             records: self.state.records.history_records(),
@@ -92,6 +94,9 @@ impl GdcmApp {
 
     /// Returns the job that composes the report which the export dialog describes; `None` if the
     /// dialog is closed or has no report, and while results are incomplete.
+    ///
+    /// The inputs are collected anew if the displayed analysis or the source has changed; the other
+    /// inputs are not compared.
     pub(super) fn report_contents_job(&mut self) -> Option<ReportContentsJob> {
         let is_open = self.state.forms.shown == Some(FormKind::Export);
         if !(is_open && self.state.forms.export.has_report())

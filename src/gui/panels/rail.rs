@@ -39,14 +39,16 @@ pub fn rail_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec
     region_ui(ui, Region::Conditions, |ui| {
         let (head, heading) =
             ui.allocate_exact_size(vec2(ui.available_width(), 20.0), Sense::hover());
+        // "no." and "kt" end where the rows' numbers and airspeeds end (`RAIL` in
+        // condition_rows.rs); "J" is at the left edge of the cells.
         for (right, words) in [(20.0, "no."), (50.0, "kt"), (64.0, "J")] {
             let upto = head.with_max_x(head.left() + right);
             painted_text(ui, upto, AT_RIGHT_END, words, small(), palette.dim_text);
         }
         table_menu_ui(ui, &heading, TableKind::Conditions, commands);
-        let map = ConditionRows::rail(state);
+        let rows = ConditionRows::rail(state);
         for condition in state.dataset().conditions() {
-            map.row_ui(ui, condition, palette, commands);
+            rows.row_ui(ui, condition, palette, commands);
         }
     });
     ui.add_space(12.0);
@@ -65,6 +67,7 @@ pub fn rail_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec
         let identified = ListButton {
             name: "Identified",
             counts: state.kept_words(BundleKind::Identified),
+            // Outliers are found by their perturbations (M5), which identified models lack.
             suggested: 0,
             sheet: Sheet::Identified,
         };
@@ -108,7 +111,8 @@ fn pin_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
 /// Button in the rail that opens a list in a sheet.
 struct ListButton {
     name: &'static str,
-    /// Kept and total model count, "16 of 19"; for records, fitted and held-out count, "8 + 1".
+    /// Kept and total model count, "16 of 19"; for records, those used in the fit and those
+    /// held out, "8 + 1".
     counts: String,
     /// Number of models suggested as outliers and not rejected.
     suggested: usize,

@@ -11,8 +11,8 @@ use gdcm_words::derivation::ExplainTarget;
 
 use super::derivation_menu::Question;
 
-/// Describes a figure's plots and marks in words. A plot is given by its index, a mark by its id
-/// and its axis coordinates.
+/// Describes a figure's plots and marks in words. A plot is given by its index in the figure plus
+/// [`FigureScene::first_plot`], a mark by its id and its axis coordinates.
 pub trait FigureWords {
     /// Returns the accessible name of a plot, read by screen readers.
     fn plot_name(&self, plot: usize) -> String;
@@ -33,6 +33,7 @@ pub trait FigureWords {
     }
 }
 
+/// Titles as names, for scenes that show the whole figure, with 0 as [`FigureScene::first_plot`].
 impl FigureWords for Figure {
     fn plot_name(&self, plot: usize) -> String {
         self.plots[plot].title.clone()
@@ -49,7 +50,8 @@ pub struct FigureScene<'a> {
     pub selected: Option<MarkId>,
     /// Mark highlighted by another view.
     pub highlighted: Option<MarkId>,
-    /// Marks that the named columns represent, if columns are interactive rather than dots.
+    /// Marks of the named columns (the places 0, 1, … of a horizontal axis with names), in this
+    /// order, if they are to be pointed at and clicked instead of dots; otherwise empty.
     pub columns: &'a [MarkId],
     /// Whether the plots can be zoomed and panned.
     pub zooms: bool,
@@ -57,8 +59,8 @@ pub struct FigureScene<'a> {
     pub least_plot_size: Vec2,
     /// Message shown if there is nothing to draw.
     pub message: &'a str,
-    /// Whether the axis texts are reduced: tick labels of the values only in the first column, and
-    /// only the unit of the horizontal axis, beside the last plot.
+    /// Whether the axis texts are reduced: tick labels of the values only in the leftmost plots,
+    /// and only the unit of the horizontal axis, beside the last plot.
     pub is_compact: bool,
     /// Whether, in a stack of panels, only the lowest has numbers along the common horizontal axis.
     pub is_stacked: bool,
@@ -97,13 +99,15 @@ impl<'a> FigureScene<'a> {
     }
 }
 
+/// Event in a figure, for its view to handle.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FigureEvent {
     /// This mark is under the pointer.
     Pointed(MarkId),
     /// Status text for the mark under the pointer.
     StatusText(String),
-    /// A mark in the plot with this index was clicked, with these modifier keys.
+    /// A mark was clicked, in the plot with this index (as in [`FigureWords`]), with these modifier
+    /// keys.
     Clicked(usize, MarkId, Modifiers),
     /// A value's derivation was requested.
     ExplanationRequested(ExplainTarget),

@@ -15,10 +15,11 @@ use crate::gui::widgets::palette::Palette;
 /// Half the height of a label \[pt\]: labels at the ends of a value axis are moved inwards by as
 /// much.
 const HALF_LABEL: f32 = 6.0;
-/// Distance between the labels and the cells \[pt\].
+/// Distance between the labels and the cells at their right \[pt\]; half of it to the cells above.
 const GAP: f32 = 4.0;
 
-/// Range and ticks of an axis along one side of a pane.
+/// Range and ticks of an axis along one side of a pane, in axis coordinates: `log10` of a frequency
+/// \[rad/s\], or a value. A *place* is such a coordinate.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct AxisRange {
     pub(super) ticks: Ticks,
@@ -38,7 +39,7 @@ impl AxisRange {
         self.ticks.labels(self.range, f64::from(length_pt))
     }
 
-    /// Returns the position of a value as a share of the axis.
+    /// Returns the position of a place as a share of the axis.
     fn share(self, place: f64) -> f32 {
         ((place - self.range.min) / self.range.width()) as f32
     }
@@ -92,12 +93,12 @@ impl AxisRange {
         }
     }
 
-    /// Returns the vertical screen position of a value in a pane.
+    /// Returns the vertical screen position of a place in a pane.
     fn height_in(self, pane: Rect, place: f64) -> f32 {
         pane.bottom() - self.share(place) * pane.height()
     }
 
-    /// Returns the horizontal screen position of a value in a pane, limited to the pane: the
+    /// Returns the horizontal screen position of a place in a pane, limited to the pane: the
     /// comparison band and the cursor may exceed the range of the axis.
     pub(super) fn across_in(self, pane: Rect, place: f64) -> f32 {
         pane.left() + self.share(place).clamp(0.0, 1.0) * pane.width()

@@ -25,6 +25,7 @@ pub(super) struct CellLook<'a> {
     pub(super) has_value: bool,
     pub(super) is_physics_outside: bool,
     pub(super) is_outside: bool,
+    /// Whether the text is dim, as it is where nothing is judged.
     pub(super) is_dim: bool,
     pub(super) is_selected: bool,
 }
@@ -73,8 +74,9 @@ fn outside_color(palette: &Palette) -> Color32 {
     palette.panel.lerp_to_gamma(palette.warning, OUTSIDE_TINT)
 }
 
-/// Draws the legend for strip and background colours above the grid, from right to left; if there
-/// is room, also for undetermined values.
+/// Draws the legend for strip and background colours above the grid; if there is room, also for
+/// undetermined values. The items are added in an order for a layout from right to left, which the
+/// caller sets.
 pub(super) fn grid_legend_ui(ui: &mut Ui, palette: &Palette) {
     ui.spacing_mut().item_spacing.x = 6.0;
     if ui.available_width() > WIDE_LEGEND {

@@ -1,4 +1,4 @@
-//! Forms, used from the keyboard.
+//! Forms, used from the keyboard; and the coherence settings, which only some datasets have.
 
 use gdcm::gui::state::forms::FormKind;
 
@@ -34,6 +34,7 @@ fn a_path_is_typed_at_once_and_enter_opens_it_and_a_tilde_means_home() {
     type_text(&mut window, "~/data.json");
     press(&mut window, Modifiers::NONE, Key::Enter);
     settle(&mut window);
+    // The small dataset has two conditions.
     assert_eq!(state(&window).dataset().conditions().len(), 2);
     assert_eq!(state(&window).forms.shown, None);
 }
@@ -45,6 +46,7 @@ fn enter_exports_once_the_dry_run_has_ended_and_replaces_nothing() {
     let first = home.path().join("results/example_corrections.json");
     press(&mut window, Modifiers::COMMAND, Key::E);
     type_text(&mut window, "~/results");
+    // The dry run, which finds the files to be written to the typed folder, may still be running.
     press(&mut window, Modifiers::NONE, Key::Enter);
     wait_until(&mut window, "the export", |window| {
         state(window).forms.shown.is_none()
@@ -53,6 +55,7 @@ fn enter_exports_once_the_dry_run_has_ended_and_replaces_nothing() {
 
     slide(&mut window, "α gains", 12.5);
     settle(&mut window);
+    // The form proposes the folder of the first export.
     press(&mut window, Modifiers::COMMAND, Key::E);
     press(&mut window, Modifiers::NONE, Key::Enter);
     wait_until(&mut window, "the export", |window| {
@@ -74,6 +77,7 @@ fn coherence_is_switched_where_something_is_measured_with_it() {
     open_by_path(&mut example, &files::small_dataset());
     settle(&mut example);
     unfold_settings(&mut example, true);
+    // The default minimum coherence.
     assert_eq!(
         state(&example).study.settings.coherence_threshold,
         Some(0.6)
@@ -94,6 +98,7 @@ fn coherence_is_switched_where_something_is_measured_with_it() {
 #[test]
 fn escape_closes_each_form_and_decides_nothing() {
     let mut window = window();
+    // Unsaved decisions, because of which Ctrl+Q opens a form.
     click(&mut window, "Keep physics model V+10kt");
     let before = state(&window).study.clone();
     let ctrl = Modifiers::COMMAND;

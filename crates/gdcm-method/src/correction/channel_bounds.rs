@@ -8,8 +8,8 @@
 //!
 //! `H_sim` is the physics model's response, `H_ref` the identified model's, `Delta phi` the phase
 //! by which the physics model leads, `q` the share of values that may lie beyond each bound. The
-//! quantiles pool the frequencies of the on-axis responses. The lower bound on a signed delay
-//! follows from the lead filters instead (`lead_design`).
+//! quantiles pool the frequencies of the on-axis responses, which the table `measuring` marks. The
+//! lower bound on a signed delay follows from the lead filters instead (`lead_design`).
 
 use serde::{Deserialize, Serialize};
 
@@ -49,6 +49,7 @@ pub fn gain_bounds(
     q: f64,
 ) -> Bounds {
     let mut pool: Vec<f64> = pooled(mismatch, measuring).flat_map(ratios).collect();
+    // Without values the quantiles are NaN, which `min` and `max` ignore.
     let lower = quantile(&mut pool, q).min(1.0);
     let upper = quantile(&mut pool, 1.0 - q).max(1.0);
     Bounds { lower, upper }
@@ -64,9 +65,11 @@ pub fn delay_upper_s(
 ) -> f64 {
     let mut pool = Vec::new();
     for mismatch in pooled(mismatch, measuring) {
+        // With coherence weights, both have only the weighted frequencies of `omega`.
         let phase = mismatch.phase_difference(omega);
         pool.extend(delays(&phase, mismatch.omega(omega)));
     }
+    // Without values the quantile is NaN, which `max` ignores.
     quantile(&mut pool, 1.0 - q).max(0.0)
 }
 

@@ -8,17 +8,21 @@ use super::coherence_error::Measurement;
 /// coherence, is proportional to `C_epsilon` ([`Measurement::deviation`]).
 ///
 /// J. S. Bendat and A. G. Piersol, *Random Data*, 4th ed. 2010, chapter 9.
-const HALF_OVERLAP_FACTOR: f64 = 0.55;
+const HALF_OVERLAP_FACTOR_SQUARED: f64 = 0.55;
 
 /// Settings for the error bars; no gain and no delay depends on them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct UncertaintySettings {
     /// Confidence level `L` for every bar, interval and test.
     pub level: f64,
-    /// Maximum degrees of freedom that the identification part in a condition's error bar borrows
-    /// from the other conditions; 0 uses the condition's own data only. With 4, Student's quantile
-    /// for three identified models is 1.9 instead of 2.9; simulated bars without a trim part are
-    /// then a quarter narrower (`docs/uncertainty.md`, measured coverage).
+    /// Maximum degrees of freedom that a condition borrows from the others: the weight with which
+    /// the variance between identified models, pooled over all conditions, is averaged with the
+    /// condition's own (`pooled` in `variance_component.rs`). 0 uses the condition's own only.
+    ///
+    /// A larger value reduces Student's quantile: at 90 % and for three identified models it is 2.9
+    /// with 0, and 1.9 with 4. The trim part of a bar, which is due to the physics models, borrows
+    /// nothing. In simulations without a trim part, bars are a quarter narrower with 4 than with 0
+    /// (`docs/uncertainty.md`, measured coverage).
     pub prior_degrees: f64,
     /// Count of independent averages for measured responses whose files do not state it; `None`
     /// leaves their coherence unused.
@@ -48,8 +52,9 @@ impl Default for UncertaintySettings {
 }
 
 impl UncertaintySettings {
-    /// Combines a measured response's own data with these defaults; `None` if the average count is
-    /// unknown or not positive. A window length that is not positive counts as unknown.
+    /// Combines a measured response's own data, where its file states them, with these defaults;
+    /// `None` if the average count is unknown or not positive. A window length that is not positive
+    /// counts as unknown. A number in the file that is not positive is not replaced by the default.
     pub fn measurement(&self, averages: Option<f64>, window_s: Option<f64>) -> Option<Measurement> {
         let averages = averages
             .or(self.averages)
@@ -58,7 +63,7 @@ impl UncertaintySettings {
             .or(self.window_s)
             .filter(|window_s| *window_s > 0.0);
         let factor = if self.half_overlap {
-            HALF_OVERLAP_FACTOR.sqrt()
+            HALF_OVERLAP_FACTOR_SQUARED.sqrt()
         } else {
             1.0
         };

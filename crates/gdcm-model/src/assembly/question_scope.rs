@@ -16,8 +16,8 @@ use crate::names::ChannelRule;
 
 /// Sets the scope for each problem that a channel option can settle.
 ///
-/// The scope is the widest one (all models, or the models with a role) in which every model with
-/// the channel has the same problem. If there is none, the scope is the model itself.
+/// The scope is the widest one in which every model with the channel has the same problem
+/// ([`wide_scopes_asking`]). If there is none, the scope is the model itself.
 pub(super) fn set_scopes(problems: &mut [Problem], parts: &[Part], rules: &Rules) {
     // For each question, the indices of the models that raise it.
     let mut models_asking: BTreeMap<Question, BTreeSet<usize>> = BTreeMap::new();
@@ -47,9 +47,12 @@ pub(super) fn set_scopes(problems: &mut [Problem], parts: &[Part], rules: &Rules
     }
 }
 
-/// Returns the wide scopes in which every model with the channel raises the question: only all
-/// models if they all do, otherwise the physics models or the identified models; empty if there is
-/// none. `asking` has the indices of the models that raise the question.
+/// Returns the wide scopes in which every model that has the channel, and is not left out, raises
+/// the question; `asking` has the indices of the models that raise it:
+///
+/// - all models, if models of both roles have the channel and every model with the channel asks,
+///   including models without a role
+/// - otherwise the physics models, or the identified models; empty if neither role qualifies
 fn wide_scopes_asking(
     question: &Question,
     asking: &BTreeSet<usize>,

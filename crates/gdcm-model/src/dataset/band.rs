@@ -10,7 +10,7 @@ pub const LEAST_OMEGA: f64 = 1e-4;
 pub const GREATEST_OMEGA: f64 = 1e5;
 
 /// A frequency band \[rad/s\], `LEAST_OMEGA <= min < max <= GREATEST_OMEGA` unless created by
-/// [`Band::beyond`].
+/// [`Band::beyond`]. A band beyond these limits is written but not read back.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "[f64; 2]", into = "[f64; 2]")]
 pub struct Band {
@@ -68,7 +68,8 @@ impl Band {
     /// Creates a band that may exceed the frequency limits, such as a plotted range.
     ///
     /// # Errors
-    /// [`BandError`] unless `0 < min < max` and `max` is finite.
+    /// [`BandError`] unless `0 < min < max` and `max` is finite; its text states the limits of
+    /// [`Band::new`].
     pub fn beyond(min: f64, max: f64) -> Result<Self, BandError> {
         if 0.0 < min && min < max && max.is_finite() {
             Ok(Self { min, max })

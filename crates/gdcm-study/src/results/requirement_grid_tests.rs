@@ -81,6 +81,8 @@ fn mode(name: ModeName, verdict: ModeVerdict, physics: Option<f64>) -> ModeFindi
         identified: numbers(2.0),
         identified_deviation: None,
         physics: physics.map(numbers),
+        // No couplings: the corrected model has the physics model's modes, because gains and delays
+        // move no pole.
         corrected_verdict: None,
         corrected: None,
         tolerance: None,
@@ -185,7 +187,8 @@ fn value(grid: &RequirementGrid, requirement: Requirement) -> f64 {
 fn known_values_are_judged_and_counted() {
     // Relative differences from the identified model for bandwidth (2.1 / 2.0 - 1) and frequencies
     // (1.8 / 2.0 - 1, 2.2 / 2.0 - 1), differences for phase delay (0.10 - 0.13). Default limits:
-    // bandwidth 0.1, phase delay 0.02 s, mean J 10, MUAD share 0.9, peak error 1.
+    // bandwidth 0.1, phase delay 0.02 s, mean J 10, MUAD share 0.9, peak error 1. The grid takes
+    // the verdicts on modes from the findings. Row 0 of the tolerance table is the roll rate.
     let grid = grid(&known_requirements(), record_findings(true, 0.7, 1.2));
     let pair = EXAMPLE
         .analysis
@@ -231,6 +234,7 @@ fn known_values_are_judged_and_counted() {
         phugoid.corrected.verdict,
         CellVerdict::NotDetermined(NotDetermined::ModeNotPaired)
     );
+    // The last test checks the number of rows in time.
     let in_time = grid.group_rows(RequirementGroup::InTime).count();
     assert_eq!(
         grid.count(),
@@ -241,6 +245,7 @@ fn known_values_are_judged_and_counted() {
             not_determined: 1 + (in_time - 1),
         }
     );
+    // The only column is CONDITION: the grid has the conditions with a summary.
     let summary = grid.group_cell(RequirementGroup::Summary, 0);
     assert_eq!((summary.count.met, summary.count.judged), (2, 2));
     assert!(summary.is_physics_outside);

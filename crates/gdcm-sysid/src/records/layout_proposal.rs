@@ -1,8 +1,8 @@
 //! Proposed columns for a record's time and channels.
 //!
 //! A *rule* ([`ChannelRule`]) describes a channel to read: its name, its unit, its names in files
-//! (*aliases*), and its unit in files that give none. A *topic* is a group of columns that share
-//! stamps of their own.
+//! (*aliases*; for records at most one), and its unit in files that give none. A *topic* is a group
+//! of columns that share stamps of their own.
 
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::names::channel_rule::ChannelRule;
@@ -84,7 +84,8 @@ impl RecordLayout {
                 problem,
                 LayoutProblem::NoColumn { .. } | LayoutProblem::NoTime(_)
             );
-            // Why a column or the time is missing is already among the problems.
+            // The proposer has added a problem, with the reason, for each column and for the time
+            // that it left open.
             if !(is_missing && is_incomplete) {
                 problems.push(problem);
             }
@@ -143,7 +144,8 @@ impl Proposer<'_> {
         layout
     }
 
-    /// Proposes the time base (step 1); `None`, with a problem, if there is none.
+    /// Proposes the time base (step 1: a sample time from the user replaces the user's column);
+    /// `None`, with a problem, if there is none.
     fn time(&mut self, settings: &TimeSettings) -> Option<TimeBase> {
         let table = self.table;
         if table.has_topics() {
@@ -250,7 +252,8 @@ impl Proposer<'_> {
     fn column_use(&mut self, rule: &ChannelRule, column: usize) -> Option<ColumnUse> {
         let used = self.converted(rule, column)?;
         let name = self.table.columns[column].name.as_str();
-        // Users give a channel at most one alias, the column's name: it is the one that matched.
+        // Aliases come from users, who give a channel at most one, the column's name: if it is
+        // marked, it is the one that matched.
         let marked_alias = rule.aliases.iter().find(|alias| has_sign_mark(alias));
         let Some(sign) = self.sign(rule, name, marked_alias.map(String::as_str)) else {
             self.problems.push(LayoutProblem::Sign {
@@ -276,11 +279,13 @@ impl Proposer<'_> {
 
     /// Returns the sign by which a column's factor is multiplied (step 4):
     ///
-    /// 1. a user-defined factor includes the sign: 1, or -1 if the user also put a minus before the
-    ///    name of a column that has none
-    /// 2. an alias with a sign mark: by this mark
-    /// 3. an alias without a sign mark, for a column without one: 1, by the user's decision
-    /// 4. else by the column's name; `None` if it leaves the sign open
+    /// 1. with a user-defined factor, which includes the column's sign: 1; but -1 if the user also
+    ///    put a minus before the name of a column that has none: it applies beside the factor
+    /// 2. with a marked alias ("-az"): by its mark
+    /// 3. with an unmarked alias, and a column without a mark: 1, because the user who named the
+    ///    column asked for no other sign
+    /// 4. otherwise, without an alias or with a marked column: by the column's name; `None` if it
+    ///    leaves the sign open
     fn sign(&self, rule: &ChannelRule, column: &str, marked_alias: Option<&str>) -> Option<f64> {
         let has_factor = matches!(
             self.channels.declared.get(&rule.name),

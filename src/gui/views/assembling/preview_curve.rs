@@ -17,11 +17,16 @@ const POINTS: usize = 300;
 /// Factor by which the curve extends beyond the comparison band at either end.
 const BEYOND: f64 = 3.0;
 
-/// Returns the curve for a response index; `None` if it cannot be computed.
-pub(super) fn curve(found: &FoundModel, response: usize, band: (f64, f64)) -> Option<BodeCurve> {
+/// Returns the curve for a response index and the comparison band \[rad/s\]; `None` if it cannot be
+/// computed.
+pub(super) fn curve(
+    found: &FoundModel,
+    response_index: usize,
+    band: (f64, f64),
+) -> Option<BodeCurve> {
     let PairResponse { omega, values } = match found.response() {
-        Some(_) => measured_response(found, response)?,
-        None => model_response(found, pair(found, response), band)?,
+        Some(_) => measured_response(found, response_index)?,
+        None => model_response(found, pair(found, response_index), band)?,
     };
     let shape = ResponseShape::new(&values);
     // A model in a file belongs to no condition yet: only the name of this id has a meaning.
@@ -41,9 +46,9 @@ pub(super) fn curve(found: &FoundModel, response: usize, band: (f64, f64)) -> Op
 }
 
 /// Returns the pair for a response index, which is `output * inputs + input`.
-pub(super) fn pair(found: &FoundModel, response: usize) -> Pair {
+pub(super) fn pair(found: &FoundModel, response_index: usize) -> Pair {
     let inputs = found.inputs.len().max(1);
-    Pair::new(response / inputs, response % inputs)
+    Pair::new(response_index / inputs, response_index % inputs)
 }
 
 /// Response from an input to an output.
@@ -55,10 +60,10 @@ struct PairResponse {
 
 /// Returns a response measured in the file, in which each pair's values are contiguous and the
 /// pairs are ordered as in [`pair`]; `None` without measured responses.
-fn measured_response(found: &FoundModel, response: usize) -> Option<PairResponse> {
+fn measured_response(found: &FoundModel, response_index: usize) -> Option<PairResponse> {
     let measured = found.response()?;
     let count = measured.omega.len();
-    let range = response * count..(response + 1) * count;
+    let range = response_index * count..(response_index + 1) * count;
     let re = measured.re.values.get(range.clone())?;
     let im = measured.im.values.get(range)?;
     let values = re.iter().zip(im).map(|(re, im)| Complex::new(*re, *im));
@@ -69,7 +74,7 @@ fn measured_response(found: &FoundModel, response: usize) -> Option<PairResponse
 }
 
 /// Computes a state-space model's response over the extended band; `None` if the matrices are
-/// incomplete or inconsistent.
+/// incomplete or inconsistent, or if the extended band exceeds the limits of [`Band::new`].
 fn model_response(found: &FoundModel, pair: Pair, band: (f64, f64)) -> Option<PairResponse> {
     let [a, b, c, d] = found.draft.matrices.clone();
     let model = StateSpace::new(a?, b?, c?, d?)
